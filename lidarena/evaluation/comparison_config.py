@@ -1,0 +1,124 @@
+"""The comparison file: which policies are measured in which environments, and how often."""
+
+from collections import Counter
+from pathlib import Path
+from typing import Annotated, Any, Literal, Self
+
+from pydantic import BeforeValidator, Field, model_validator
+
+from lidarena.agents.yaml_config import ConfigModel
+
+EVALUATION_KEYWORDS = ("expose_truth", "render_mode")
+"""Keywords of the environments that the evaluation itself sets."""
+
+
+def _named(key: str) -> BeforeValidator:
+    """Let a plain text stand for a section with one key."""
+    return BeforeValidator(lambda value: {key: value} if isinstance(value, str) else value)
+
+
+class EnvEntry(ConfigModel):
+    """One environment of a comparison.
+
+    Attributes:
+        id: Gymnasium's, such as ``lidarena/Env1-v0``; ``module:id`` imports a module of yours first.
+        name: What tables and pictures call it; the id without its namespace if left out.
+        keywords: Handed to `gymnasium.make`, such as ``map`` or ``max_episode_steps``.
+    """
+
+    id: str = Field(min_length=1)
+    name: str | None = None
+    keywords: dict[str, Any] = Field(default_factory=dict)
+
+    @model_validator(mode="after")
+    def _leave_the_evaluation_its_own(self) -> Self:
+        for key in EVALUATION_KEYWORDS:
+            if key in self.keywords:
+                raise ValueError(f"the keyword {key!r} of {self.id!r} is set by the evaluation itself, so leave it out")
+        return self
+
+    @property
+    def label(self) -> str:
+        """What tables and pictures call it."""
+        return self.name or self.id.rpartition(":")[2].rpartition("/")[2]
+
+
+class PolicyEntry(ConfigModel):
+    """One policy of a comparison.
+
+    Attributes:
+        name: Of a baseline (`lidarena.baselines.names`), or ``module:callable`` for a policy of yours, called with the
+            environment and the options. With ``path``, any name you like for the trained agent.
+        path: Run folder of a trained agent, as `lidarena.agents.load` reads it.
+        options: Keyword arguments of the baseline.
+        keywords: Of the environment, for this policy alone, over those of the environment's entry: an agent that was
+            trained on another ``observation`` or ``reward`` needs the same here.
+        label: What tables and pictures call it; ``name`` if left out.
+    """
+
+    name: str = Field(min_length=1)
+    path: str | None = None
+    options: dict[str, Any] = Field(default_factory=dict)
+    keywords: dict[str, Any] = Field(default_factory=dict)
+    label: str | None = None
+
+    @model_validator(mode="after")
+    def _options_are_for_baselines(self) -> Self:
+        if self.path is not None and self.options:
+            raise ValueError(f"policy {self.name!r} has a path and options, but a trained agent takes no options")
+        for key in EVALUATION_KEYWORDS:
+            if key in self.keywords:
+                raise ValueError(f"the keyword {key!r} of policy {self.name!r} is set by the evaluation itself")
+        return self
+
+    @property
+    def title(self) -> str:
+        """What tables and pictures call it."""
+        return self.label or self.name
+
+
+class ComparisonConfig(ConfigModel):
+    """A comparison file.
+
+    Attributes:
+        envs: The environments; a plain id stands for an entry without keywords.
+        policies: The policies; a plain name stands for a baseline without options. The first is the one that the
+            others are compared with pair by pair.
+        episodes: Per environment and policy.
+        seed: Episode k of every policy runs on seed + k, so that policies meet the same worlds.
+        pictures: Draw the first episode of each, an overview and the progress over time (PNG).
+        videos: Film the first episode of each: ``mp4``, ``gif``, or false.
+        out: Folder of the results.
+        workers: Processes; one per core if left out.
+    """
+
+    envs: list[Annotated[EnvEntry, _named("id")]] = Field(min_length=1)
+    policies: list[Annotated[PolicyEntry, _named("name")]] = Field(min_length=1)
+    episodes: int = Field(default=20, ge=1, le=100_000)
+    seed: int = Field(default=0, ge=0, lt=2**31)
+    pictures: bool = True
+    videos: Literal["mp4", "gif", False] = False
+    out: str = Field(default="results/comparison", min_length=1)
+    workers: int | None = Field(default=None, ge=1, le=1024)
+
+    @model_validator(mode="after")
+    def _labels_tell_entries_apart(self) -> Self:
+        _refuse_twins([env.label for env in self.envs], "environments", "name")
+        _refuse_twins([policy.title for policy in self.policies], "policies", "label")
+        return self
+
+    @property
+    def folder(self) -> Path:
+        """Folder of the results."""
+        return Path(self.out)
+
+    @property
+    def seeds(self) -> range:
+        """Seeds of the episodes, the same for every policy."""
+        return range(self.seed, self.seed + self.episodes)
+
+
+def _refuse_twins(labels: list[str], what: str, key: str) -> None:
+    twins = sorted(label for label, count in Counter(labels).items() if count > 1)
+    if twins:
+        raise ValueError(f"two {what} are called {twins[0]!r}; give each its own {key!r}")

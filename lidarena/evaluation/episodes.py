@@ -1,0 +1,190 @@
+"""One episode: drive a policy through an environment and measure it against the truth."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from time import perf_counter
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.evaluation.participants import Env, Policy
+from lidarena.evaluation.statistics import geometric_mean
+
+Floats = NDArray[np.float64]
+
+UNTIMED_DECISIONS = 5
+"""Decisions at the start of an episode whose time is not counted: they load compiled code."""
+
+
+@dataclass(frozen=True)
+class Trace:
+    """Where the robot went and what it believed, for pictures.
+
+    Attributes:
+        true: Positions, shape (T + 1, 2) [m]; empty (0, 2) if the environment does not expose the truth.
+        estimated: Positions that SLAM believed, shape (T + 1, 2) [m].
+        grid: Believed occupancy at the end, shape (rows, columns), -1 / 0 / 100; None if there is no map.
+        resolution: Side of a cell [m].
+        origin: Lower-left corner of cell [0, 0], shape (2,) [m].
+        edges: Walls of the floor plan as x1, y1, x2, y2, shape (E, 4) [m].
+        circles: Pillars of the floor plan as x, y, radius, shape (C, 3) [m].
+    """
+
+    true: Floats
+    estimated: Floats
+    grid: NDArray[np.int8] | None
+    resolution: float
+    origin: Floats
+    edges: Floats
+    circles: Floats
+
+
+@dataclass(frozen=True)
+class Episode:
+    """What came of one episode.
+
+    Attributes:
+        seed: Of the environment.
+        measures: Values by `measures.MEASURES`' names, in SI units and fractions; NaN where the environment does not
+            report what a measure needs.
+        ending: Why it ended: ``explored``, ``collision``, ``out of time`` or ``policy finished``.
+        progress: Time [s] and completeness after each step, shape (T + 1, 2).
+        trace: For pictures, if it was asked for.
+    """
+
+    seed: int
+    measures: dict[str, float]
+    ending: str
+    progress: NDArray[np.float32]
+    trace: Trace | None = None
+
+
+def policy_seed(seed: int) -> int:
+    """Return the policy's seed for an environment's seed: another stream, so that their noises are independent."""
+    return int(np.random.SeedSequence((seed, 1)).generate_state(1)[0])
+
+
+def without_truth(info: Mapping[str, Any]) -> dict[str, Any]:
+    """Return what a policy may see of an ``info``."""
+    return {key: value for key, value in info.items() if key != "truth"}
+
+
+def run_episode(
+    env: Env,
+    policy: Policy,
+    seed: int,
+    *,
+    max_steps: int | None = None,
+    keep_trace: bool = False,
+    film: Callable[[Env], None] | None = None,
+) -> Episode:
+    """Run one episode and measure it.
+
+    Args:
+        env: Made with ``expose_truth=True``; the truth is kept from the policy.
+        policy: Who drives.
+        seed: Of the environment; the policy gets `policy_seed` of it.
+        max_steps: Stop here, if the environment does not end the episode before.
+        keep_trace: Keep the trajectory and the final map for pictures.
+        film: Called with the environment after the reset and after every step.
+
+    Returns:
+        The measured episode.
+    """
+    observation, info = env.reset(seed=seed)
+    policy.reset(seed=policy_seed(seed))
+    log = _Log()
+    log.note(info)
+    terminated = truncated = False
+    while not (terminated or truncated):
+        if film:
+            film(env)
+        begin = perf_counter()
+        action = policy.act(observation, without_truth(info))
+        log.decisions.append(perf_counter() - begin)
+        if getattr(policy, "finished", False):
+            break
+        observation, reward, terminated, truncated, info = env.step(action)
+        truncated = truncated or len(log.decisions) == max_steps
+        log.rewards.append(float(reward))
+        log.note(info)
+    if film and (terminated or truncated):
+        film(env)
+    ending = _ending(terminated, truncated, info)
+    trace = _trace(env, info, log) if keep_trace else None
+    return Episode(seed, log.measures(info, ending), ending, log.progress(), trace)
+
+
+def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:
+    if info.get("collision", False):
+        return "collision"
+    if terminated:
+        return "explored"
+    return "out of time" if truncated else "policy finished"
+
+
+@dataclass
+class _Log:
+    """Everything noted during an episode; one entry for the reset, one for each step."""
+
+    decisions: list[float] = field(default_factory=list)
+    rewards: list[float] = field(default_factory=list)
+    scalars: dict[str, list[float]] = field(default_factory=dict)
+    poses: dict[str, list[Floats]] = field(default_factory=dict)
+
+    def note(self, info: Mapping[str, Any]) -> None:
+        """Copy what changes from step to step; the environment may reuse its arrays."""
+        for key in ("completeness", "time", "d_optimality", "entropy", "entropy_gmapping"):
+            self.scalars.setdefault(key, []).append(float(info.get(key, np.nan)))
+        for key, pose in (
+            ("true", info.get("truth", {}).get("pose")),
+            ("estimated", info.get("pose")),
+            ("odometry", info.get("odometry_pose")),
+        ):
+            position = np.full(2, np.nan) if pose is None else np.array(pose[:2], dtype=np.float64)
+            self.poses.setdefault(key, []).append(position)
+
+    def measures(self, info: Mapping[str, Any], ending: str) -> dict[str, float]:
+        """Return every measure of the finished episode."""
+        values = {
+            "completeness": self.scalars["completeness"][-1],
+            "success": float(ending == "explored"),
+            "collision": float(ending == "collision"),
+            "path_length": float(info.get("truth", {}).get("path_length", np.nan)),
+            "time": self.scalars["time"][-1],
+            "d_optimality": float(geometric_mean(self._after_reset("d_optimality"))),
+            "trajectory_error": self._position_error("estimated"),
+            "odometry_error": self._position_error("odometry"),
+            "return": float(np.sum(self.rewards)),
+            "steps": float(len(self.rewards)),
+            "decision_time": float(np.mean(self.decisions[UNTIMED_DECISIONS:] or self.decisions)),
+        }
+        return values | {key: float(np.mean(self._after_reset(key))) for key in ("entropy", "entropy_gmapping")}
+
+    def progress(self) -> NDArray[np.float32]:
+        """Return time and completeness, shape (T + 1, 2)."""
+        return np.column_stack([self.scalars["time"], self.scalars["completeness"]]).astype(np.float32)
+
+    def _after_reset(self, key: str) -> Floats:
+        """A scalar after every step; the one of the reset only if no step was taken."""
+        return np.array(self.scalars[key][1:] or self.scalars[key])
+
+    def _position_error(self, key: str) -> float:
+        """Mean distance to the true position over the episode [m]."""
+        away = np.array(self.poses[key]) - np.array(self.poses["true"])
+        return float(np.mean(np.hypot(away[:, 0], away[:, 1])))
+
+
+def _trace(env: Env, info: Mapping[str, Any], log: _Log) -> Trace:
+    plan = getattr(env.unwrapped, "floorplan", None)
+    true, estimated = (np.array(log.poses[key]) for key in ("true", "estimated"))
+    return Trace(
+        true=true[~np.isnan(true).any(axis=1)],
+        estimated=estimated[~np.isnan(estimated).any(axis=1)],
+        grid=np.array(info["map"], dtype=np.int8) if "map" in info else None,
+        resolution=float(info.get("resolution", 0.05)),
+        origin=np.array(info.get("origin", (0.0, 0.0)), dtype=np.float64),
+        edges=np.array(plan.edges) if plan is not None else np.empty((0, 4)),
+        circles=np.array(plan.circles) if plan is not None else np.empty((0, 3)),
+    )

@@ -1,0 +1,164 @@
+"""Environments and policies from the entries of a comparison file; refusals for what cannot be made."""
+
+import importlib
+from collections.abc import Mapping
+from functools import partial
+from pathlib import Path
+from typing import Any, Protocol, runtime_checkable
+
+import gymnasium as gym
+
+import lidarena  # noqa: F401  registers the environments, also in a spawned worker
+from lidarena import baselines
+from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
+from lidarena.world.refusals import ConfigError, suggest
+
+Env = gym.Env[Any, Any]
+
+AGENT_KEYWORDS = ("observation", "reward", "action")
+"""Keywords of the environments that change what an observation or an action means."""
+
+
+@runtime_checkable
+class Policy(Protocol):
+    """What is compared: the one protocol of learned agents and classical methods.
+
+    A policy may have an attribute ``finished``; the episode ends when it turns true.
+    """
+
+    def reset(self, seed: int | None = None) -> None:
+        """Forget the last episode."""
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        """Return the action for an observation and an ``info``."""
+
+
+def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str | None = None) -> tuple[Env, Policy]:
+    """Make an environment, with the truth exposed to the evaluation, and a policy to drive in it.
+
+    A trained agent brings along the `AGENT_KEYWORDS` that it was trained with, defaults included, in place of the
+    environment entry's: on another ``reward`` or ``observation`` its inputs would mean something else.
+
+    Args:
+        env_entry: Which environment.
+        entry: Which policy; its ``keywords`` come on top of everybody's.
+        render_mode: ``"rgb_array"`` for videos.
+
+    Raises:
+        ConfigError: There is no such environment, keyword, baseline, option, module or folder.
+        PolicyFileError: The agent's files are torn or of another kind.
+    """
+    check_policy(entry)
+    keywords = dict(env_entry.keywords)
+    agent = None
+    if entry.path is not None:
+        from lidarena import agents  # imports torch, which only trained agents need
+
+        agent = agents.load(entry.path)
+        own = {key: value for key, value in agent.env_keywords.items() if key in AGENT_KEYWORDS}
+        keywords = {key: value for key, value in keywords.items() if key not in AGENT_KEYWORDS} | own
+    env = make_env(env_entry.id, keywords | entry.keywords, render_mode)
+    try:
+        if agent is None:
+            return env, _make_untrained(entry, env)
+        if agent.action_space != env.action_space:
+            raise ConfigError(
+                f"policy {entry.title!r} was trained on actions of {agent.action_space}, "
+                f"but environment {env_entry.label!r} takes {env.action_space}"
+            )
+    except BaseException:
+        env.close()
+        raise
+    return env, agent
+
+
+def make_env(env_id: str, keywords: Mapping[str, Any], render_mode: str | None = None) -> Env:
+    """Make an environment with the truth exposed to the evaluation.
+
+    Raises:
+        ConfigError: There is no such environment or keyword.
+    """
+    check_env_id(env_id)
+    given = {**keywords, "expose_truth": True} | ({} if render_mode is None else {"render_mode": render_mode})
+    try:
+        env: Env = gym.make(env_id, disable_env_checker=True, **given)
+    except (TypeError, gym.error.Error) as error:
+        raise ConfigError(f"environment {env_id!r} cannot be made: {_first_line(error)}") from error
+    return env
+
+
+def _make_untrained(entry: PolicyEntry, env: Env) -> Policy:
+    make = _own_policy(entry) if ":" in entry.name else partial(baselines.make, entry.name)
+    try:
+        policy = make(env, **entry.options)
+    except TypeError as error:
+        raise ConfigError(f"policy {entry.name!r} cannot be made: {_first_line(error)}") from error
+    if not isinstance(policy, Policy):
+        raise ConfigError(f"policy {entry.name!r} made {type(policy).__name__!r}, which lacks reset(seed) or act(...)")
+    return policy
+
+
+def check(config: ComparisonConfig) -> None:
+    """Refuse what can be seen to be wrong before anything is made.
+
+    Raises:
+        ConfigError: An environment, baseline, module or folder does not exist.
+    """
+    for env in config.envs:
+        check_env_id(env.id)
+    for policy in config.policies:
+        check_policy(policy)
+
+
+def check_env_id(env_id: str) -> None:
+    """Refuse an id that is not registered, and import the module before its colon.
+
+    Raises:
+        ConfigError: With the nearest right id.
+    """
+    module, _, name = env_id.rpartition(":")
+    if module:
+        _import(module, f"environment {env_id!r}")
+    try:
+        gym.spec(name)
+    except gym.error.Error as error:
+        known = [known for known in gym.registry if known.partition("/")[0] in ("lidarena", name.partition("/")[0])]
+        raise ConfigError(f"there is no environment {env_id!r}{suggest(name, known)}") from error
+
+
+def check_policy(entry: PolicyEntry) -> None:
+    """Refuse a policy whose baseline, module or folder does not exist.
+
+    Raises:
+        ConfigError: With the nearest right name.
+    """
+    if entry.path is not None:
+        if not Path(entry.path).exists():
+            raise ConfigError(
+                f"policy {entry.title!r}: there is no {entry.path!r}; 'path' is the run folder that train.py wrote"
+            )
+    elif ":" in entry.name:
+        _own_policy(entry)
+    elif entry.name not in baselines.names():
+        raise ConfigError(f"there is no policy {entry.name!r}{suggest(entry.name, baselines.names())}")
+
+
+def _own_policy(entry: PolicyEntry) -> Any:
+    """Look up ``module:callable``."""
+    module_name, _, attribute = entry.name.partition(":")
+    module = _import(module_name, f"policy {entry.name!r}")
+    if not hasattr(module, attribute):
+        public = [name for name in vars(module) if not name.startswith("_")]
+        raise ConfigError(f"policy {entry.name!r}: {module_name!r} has no {attribute!r}{suggest(attribute, public)}")
+    return getattr(module, attribute)
+
+
+def _import(module: str, wanted_by: str) -> Any:
+    try:
+        return importlib.import_module(module)
+    except ModuleNotFoundError as error:
+        raise ConfigError(f"{wanted_by}: there is no module {error.name!r}") from error
+
+
+def _first_line(error: Exception) -> str:
+    return (str(error).strip() or type(error).__name__).splitlines()[0]

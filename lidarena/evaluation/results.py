@@ -1,0 +1,195 @@
+"""What a comparison found: one row per environment and policy, `results.json`, and the folder that holds it all."""
+
+import itertools
+import json
+import math
+import os
+import platform
+import shutil
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+from typing import Any
+
+from lidarena.evaluation.comparison_config import ComparisonConfig
+from lidarena.evaluation.episodes import Episode
+from lidarena.evaluation.measures import BY_NAME, MEASURES, Measure
+from lidarena.evaluation.statistics import Interval, bootstrap, paired_difference, share_interval
+from lidarena.world.refusals import ConfigError
+
+RESULTS_FILE = "results.json"
+PACKAGES = ("lidarena", "gymnasium", "numba", "numpy", "pymunk", "scipy", "stable-baselines3", "torch")
+
+
+@dataclass(frozen=True)
+class Metric:
+    """A measure over the episodes of a row: mean, 95% interval and the values in the order of the seeds."""
+
+    interval: Interval
+    values: tuple[float, ...]
+
+
+@dataclass(frozen=True)
+class Row:
+    """An environment and a policy."""
+
+    env: str
+    policy: str
+    episodes: int
+    metrics: dict[str, Metric]
+
+
+def summarise(env: str, policy: str, episodes: Sequence[Episode]) -> Row:
+    """Return the row of one environment and policy.
+
+    Args:
+        env: What tables call the environment.
+        policy: What tables call the policy.
+        episodes: In the order of the seeds.
+
+    Returns:
+        The row, without the measures that no episode reported.
+    """
+    metrics = {}
+    for measure in MEASURES:
+        values = tuple(episode.measures.get(measure.name, math.nan) for episode in episodes)
+        if not all(math.isnan(value) for value in values):
+            interval = share_interval(values) if measure.share else bootstrap(values)
+            metrics[measure.name] = Metric(interval, values)
+    return Row(env, policy, len(episodes), metrics)
+
+
+def contenders(rows: Sequence[Row], measure: Measure) -> list[Row]:
+    """Return the rows of one environment among which a measure may be compared.
+
+    Where `Measure.needs_coverage`, those are the rows whose completeness cannot be told from the best one: a policy
+    that crashes at once drives the shortest path, and that is no merit.
+    """
+    measured = [row for row in rows if measure.name in row.metrics]
+    if not measure.needs_coverage or not all("completeness" in row.metrics for row in measured):
+        return measured
+    return level_with_best(measured, BY_NAME["completeness"])
+
+
+def best(rows: Sequence[Row], measure: Measure) -> set[str]:
+    """Return the policies of one environment that are best in a measure, for bold type.
+
+    The best mean, and those whose paired difference from it has an interval that contains zero. Empty where no
+    direction is better, or where all policies are level or only one was measured.
+    """
+    if measure.better is None:
+        return set()
+    level = level_with_best(contenders(rows, measure), measure)
+    return {row.policy for row in level} if len(level) < len(rows) else set()
+
+
+def level_with_best(rows: Sequence[Row], measure: Measure) -> list[Row]:
+    """Return the row with the best mean and those that cannot be told from it on the same seeds."""
+    if not rows:
+        return []
+    sign = -1.0 if measure.better == "low" else 1.0
+    winner = max(rows, key=lambda row: sign * row.metrics[measure.name].interval.mean)
+    return [row for row in rows if row is winner or _is_level(difference(row, winner, measure))]
+
+
+def difference(row: Row, other: Row, measure: Measure) -> Interval:
+    """Return the paired difference of two rows of one environment in a measure."""
+    return paired_difference(row.metrics[measure.name].values, other.metrics[measure.name].values)
+
+
+def _is_level(difference: Interval) -> bool:
+    return math.isnan(difference.low) or difference.low <= 0 <= difference.high
+
+
+def results_document(config: ComparisonConfig, rows: Sequence[Row]) -> dict[str, Any]:
+    """Return what `results.json` holds: ``config``, ``versions`` and ``rows`` (the schema is in DESIGN.md)."""
+    return {
+        "config": config.model_dump(mode="json"),
+        "versions": {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES},
+        "rows": [
+            {
+                "env": row.env,
+                "policy": row.policy,
+                "episodes": row.episodes,
+                "metrics": {name: _metric_document(metric) for name, metric in row.metrics.items()},
+            }
+            for row in rows
+        ],
+    }
+
+
+def write_results(path: Path, config: ComparisonConfig, rows: Sequence[Row]) -> None:
+    """Write `results.json`; a number that does not exist is null, since JSON knows no NaN."""
+    text = json.dumps(results_document(config, rows), indent=1, allow_nan=False, ensure_ascii=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def check_folder(folder: Path) -> None:
+    """Refuse a folder that holds something else than results, before hours of work go towards it.
+
+    Raises:
+        ConfigError: It is a file, or a folder with other things in it.
+    """
+    if folder.is_dir() and ((folder / RESULTS_FILE).is_file() or not any(folder.iterdir())):
+        return
+    if folder.exists():
+        what = f"a folder without {RESULTS_FILE}" if folder.is_dir() else "a file"
+        raise ConfigError(f"{str(folder)!r} is {what}; choose another place for the results with --out DIR")
+
+
+def write_results_folder(folder: Path, fill: Callable[[Path], None]) -> Path | None:
+    """Make the folder of a comparison whole or not at all, and keep earlier results.
+
+    Args:
+        folder: Where the results go.
+        fill: Called with an empty temporary folder; writes everything into it.
+
+    Returns:
+        Where earlier results of that name were moved (``NAME.1``, ``NAME.2``, …); None if there were none.
+
+    Raises:
+        ConfigError: See `check_folder`.
+        OSError: The place is not writable or full.
+    """
+    folder = Path(os.path.abspath(folder))
+    check_folder(folder)
+    temporary = folder.with_name(f".{folder.name}.{os.getpid()}.part")
+    shutil.rmtree(temporary, ignore_errors=True)
+    temporary.mkdir(parents=True)
+    try:
+        fill(temporary)
+        earlier = _set_aside(folder)
+        temporary.rename(folder)
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+    return earlier
+
+
+def _set_aside(folder: Path) -> Path | None:
+    """Rename what stands at the place of new results to the next free number."""
+    if not folder.exists():
+        return None
+    if not any(folder.iterdir()):
+        folder.rmdir()
+        return None
+    numbers = (folder.with_name(f"{folder.name}.{number}") for number in itertools.count(1))
+    aside = next(path for path in numbers if not path.exists())
+    folder.rename(aside)
+    return aside
+
+
+def _metric_document(metric: Metric) -> dict[str, Any]:
+    mean, low, high = (_or_null(value) for value in metric.interval)
+    return {"mean": mean, "ci_low": low, "ci_high": high, "values": [_or_null(value) for value in metric.values]}
+
+
+def _or_null(value: float) -> float | None:
+    return float(value) if math.isfinite(value) else None
+
+
+def _version(package: str) -> str | None:
+    try:
+        return version(package)
+    except PackageNotFoundError:
+        return None

@@ -1,0 +1,231 @@
+"""All episodes of a comparison on all cores, in an order and with results that do not depend on the number of cores."""
+
+import multiprocessing
+import os
+import signal
+import sys
+import traceback
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, NoReturn
+
+import cv2
+import numba
+
+from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
+from lidarena.evaluation.episodes import Episode, run_episode
+from lidarena.evaluation.participants import make_participants
+from lidarena.evaluation.videos import Film
+from lidarena.world.refusals import Refusal
+
+REHEARSED_STEPS = 30
+THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+
+
+class EpisodeError(RuntimeError):
+    """An environment or a policy raised; the message names both and the seed, ``report`` holds the traceback."""
+
+    def __init__(self, sentence: str, report: str = "") -> None:
+        super().__init__(sentence)
+        self.report = report
+
+
+@dataclass(frozen=True)
+class Task:
+    """One episode to run.
+
+    Attributes:
+        env: The environment.
+        policy: The policy.
+        seed: Of the environment.
+        keep_trace: Keep what pictures need.
+        film: File of the video, if one is wanted.
+        max_steps: Stop here; None leaves it to the environment.
+    """
+
+    env: EnvEntry
+    policy: PolicyEntry
+    seed: int
+    keep_trace: bool = False
+    film: Path | None = None
+    max_steps: int | None = None
+
+    def __str__(self) -> str:
+        return f"environment {self.env.label!r}, policy {self.policy.title!r}, seed {self.seed}"
+
+
+@dataclass(frozen=True)
+class _Failure:
+    """An exception as text: what a worker raised may not survive the way back as an object."""
+
+    sentence: str
+    report: str
+    refused: bool
+
+
+def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
+    """Return every episode of a comparison; the first of each environment and policy is drawn and filmed.
+
+    The first is fixed before anything is known about it: a picture of the best one would be advertising.
+
+    Args:
+        config: The comparison.
+        videos: Folder for the videos.
+    """
+    tasks = []
+    for env in config.envs:
+        for policy in config.policies:
+            for seed in config.seeds:
+                first = seed == config.seed
+                film = videos / f"{file_stem(env, policy)}.{config.videos}" if config.videos and first else None
+                tasks.append(Task(env, policy, seed, config.pictures and first, film))
+    return tasks
+
+
+def file_stem(env: EnvEntry, policy: PolicyEntry) -> str:
+    """Return the name of the files about an environment and a policy, without what file systems dislike."""
+    text = f"{env.label}_{policy.title}"
+    return "".join(sign if sign.isalnum() or sign in "-_." else "-" for sign in text)
+
+
+def rehearse(config: ComparisonConfig) -> None:
+    """Run the first steps of every policy in every environment, so that mistakes show within seconds.
+
+    It also compiles what the policies call, once instead of in every worker, and before anything is timed.
+
+    Raises:
+        Refusal: A keyword, map, option or agent is refused.
+        EpisodeError: Something else went wrong.
+    """
+    pairs = [(env, policy) for env in config.envs for policy in config.policies]
+    run_tasks([Task(env, policy, config.seed, max_steps=REHEARSED_STEPS) for env, policy in pairs], workers=1)
+
+
+def run_tasks(
+    tasks: Sequence[Task], workers: int | None = None, advance: Callable[[Task], None] | None = None
+) -> list[Episode]:
+    """Run episodes on several processes.
+
+    Args:
+        tasks: What to run.
+        workers: Processes; one per available core if None. With one, everything runs in this process.
+        advance: Called in this process after each episode, in the order in which they end.
+
+    Returns:
+        One episode per task, in the tasks' order.
+
+    Raises:
+        Refusal: A task was refused.
+        EpisodeError: A task raised, or a process died. What had not begun is dropped.
+    """
+    count = min(workers or available_cores(), max(1, len(tasks)))
+    pool: AbstractContextManager[Iterator[tuple[int, Episode | _Failure]]]
+    pool = _in_processes(tasks, count) if count > 1 else nullcontext(_in_this_process(tasks))
+    episodes: dict[int, Episode] = {}
+    with _single_threaded(), pool as outcomes:
+        for index, outcome in outcomes:
+            if isinstance(outcome, _Failure):
+                _raise(tasks[index], outcome)
+            episodes[index] = outcome
+            if advance:
+                advance(tasks[index])
+    return [episodes[index] for index in range(len(tasks))]
+
+
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
+def _in_this_process(tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Failure]]:
+    for index, task in enumerate(tasks):
+        yield index, _guarded(task)
+
+
+@contextmanager
+def _in_processes(tasks: Sequence[Task], count: int) -> Iterator[Iterator[tuple[int, Episode | _Failure]]]:
+    # Spawned, not forked: torch and numba keep threads that a fork would copy in a broken state.
+    context = multiprocessing.get_context("spawn")
+    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_prepare_worker)
+    try:
+        yield _as_they_end(pool, tasks)
+    finally:
+        pool.shutdown(wait=True, cancel_futures=True)
+
+
+def _prepare_worker() -> None:
+    signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends a worker without a traceback of its own
+    numba.set_num_threads(1)
+    cv2.setNumThreads(1)
+
+
+def _as_they_end(pool: ProcessPoolExecutor, tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Failure]]:
+    futures = {pool.submit(_guarded, task): index for index, task in enumerate(tasks)}
+    try:
+        for future in as_completed(futures):
+            yield futures[future], future.result()
+    except BrokenProcessPool as error:
+        raise EpisodeError(
+            "a worker process ended without an answer, which mostly means too little memory; "
+            "run fewer at once with --set workers=1"
+        ) from error
+
+
+def _guarded(task: Task) -> Episode | _Failure:
+    """Run a task; whatever it raises comes back as text."""
+    try:
+        return _run(task)
+    except Refusal as refusal:
+        return _Failure(str(refusal), traceback.format_exc(), refused=True)
+    except Exception as error:
+        lines = str(error).strip().splitlines()
+        sentence = f"{type(error).__name__}: {lines[0]}" if lines else type(error).__name__
+        return _Failure(sentence, traceback.format_exc(), refused=False)
+
+
+def _raise(task: Task, failure: _Failure) -> NoReturn:
+    if failure.refused:
+        raise Refusal(f"environment {task.env.label!r}, policy {task.policy.title!r}: {failure.sentence}")
+    raise EpisodeError(f"{task}: {failure.sentence}", failure.report)
+
+
+def _run(task: Task) -> Episode:
+    env, policy = make_participants(task.env, task.policy, "rgb_array" if task.film else None)
+    try:
+        _limit_threads(1)
+        how: dict[str, Any] = {"max_steps": task.max_steps, "keep_trace": task.keep_trace}
+        if task.film is None:
+            return run_episode(env, policy, task.seed, **how)
+        with Film(task.film) as film:
+            return run_episode(env, policy, task.seed, film=film.add, **how)
+    finally:
+        env.close()
+
+
+@contextmanager
+def _single_threaded() -> Iterator[None]:
+    """One thread a process, here and in what is started: as many processes as cores would fight over them."""
+    before = {name: os.environ.get(name) for name in THREAD_VARIABLES}
+    torch_threads = sys.modules["torch"].get_num_threads() if "torch" in sys.modules else None
+    os.environ.update(dict.fromkeys(THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value
+        if torch_threads is not None:
+            _limit_threads(torch_threads)
+
+
+def _limit_threads(count: int) -> None:
+    """Set the threads of torch, which reads its environment variable only while it is imported."""
+    if "torch" in sys.modules:
+        sys.modules["torch"].set_num_threads(count)

@@ -1,0 +1,203 @@
+"""The tables of a comparison: CSV for programs, Markdown and LaTeX for papers, rich text for the terminal."""
+
+import csv
+import io
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from itertools import groupby
+
+from rich.console import Group
+from rich.table import Table
+from rich.text import Text
+
+from lidarena.evaluation.measures import MEASURES, Measure
+from lidarena.evaluation.results import Row, best, contenders, difference
+from lidarena.evaluation.statistics import Interval
+
+ABSENT = "–"
+NOTE = (
+    "Mean over episodes and its 95% interval (BCa bootstrap; Wilson's for shares). Policies met the same seeds. "
+    "Bold: the best, and what cannot be told from it by paired differences. Path, time, D-optimality and pose error "
+    "are compared only among policies that explored as much as the best; they count every episode, also those cut "
+    "short by a collision."
+)
+LATEX_SIGNS = {
+    "\\": r"\textbackslash{}",
+    **{sign: f"\\{sign}" for sign in "&%$#_{}"},
+    "~": r"\textasciitilde{}",
+    "^": r"\textasciicircum{}",
+    "⁻": "$^{-}$",
+    "³": "$^{3}$",
+    "↑": r"$\uparrow$",
+    "↓": r"$\downarrow$",
+    "–": "--",
+    "−": "$-$",
+}
+
+
+def by_env(rows: Sequence[Row]) -> list[list[Row]]:
+    """Return the rows of each environment, in the order of the comparison."""
+    return [list(group) for _, group in groupby(rows, key=lambda row: row.env)]
+
+
+def interval_text(interval: Interval, measure: Measure, signed: bool = False) -> tuple[str, str]:
+    """Return a mean and its interval as text, rounded to two digits of half the interval's width.
+
+    Args:
+        interval: In stored units.
+        measure: Whose scale applies.
+        signed: Show the plus sign too, for differences.
+
+    Returns:
+        Such as ``("25.0", "[23.9, 26.2]")``; the second is empty where there is no interval.
+    """
+    mean, low, high = (value * measure.scale for value in interval)
+    if math.isnan(mean):
+        return ABSENT, ""
+    half = (high - low) / 2
+    decimals = 0 if measure.share and not signed else _decimals(half, mean)
+    shown = [_rounded(value, decimals, signed) for value in (mean, low, high)]
+    return shown[0], "" if math.isnan(half) else f"[{shown[1]}, {shown[2]}]"
+
+
+def csv_text(rows: Sequence[Row]) -> str:
+    """Return `table.csv`: one line per environment, policy and measure, unrounded, in SI units and fractions."""
+    stream = io.StringIO()
+    writer = csv.writer(stream, lineterminator="\n")
+    writer.writerow(["env", "policy", "episodes", "measure", "unit", "mean", "ci_low", "ci_high"])
+    for row in rows:
+        for measure in _measured([row]):
+            numbers = ["" if math.isnan(number) else number for number in row.metrics[measure.name].interval]
+            writer.writerow([row.env, row.policy, row.episodes, measure.name, measure.stored_unit, *numbers])
+    return stream.getvalue()
+
+
+def markdown_text(rows: Sequence[Row]) -> str:
+    """Return `table.md`: every measure, a section per environment, and paired differences from the first policy."""
+    sections = []
+    for group in by_env(rows):
+        measures = _measured(group)
+        sections.append(f"## {_cell(group[0].env)} ({group[0].episodes} episodes)\n")
+        winners = {measure.name: best(group, measure) for measure in measures}
+
+        def absolute(row: Row, measure: Measure, winners: dict[str, set[str]] = winners) -> str:
+            return _markdown_cell(_interval(row, measure), measure, row.policy in winners[measure.name])
+
+        sections.append(_markdown_table(group, measures, absolute))
+        if len(group) > 1:
+            sections.append(f"Difference from {_cell(group[0].policy)}, seed by seed:\n")
+            sections.append(_markdown_differences(group))
+    return "\n".join([*sections, NOTE]) + "\n"
+
+
+def latex_text(rows: Sequence[Row]) -> str:
+    """Return `table.tex`: the main measures as a booktabs table."""
+    measures = [measure for measure in _measured(rows) if measure.main]
+    lines = [
+        r"% needs \usepackage{booktabs}",
+        rf"\begin{{tabular}}{{ll{'r' * len(measures)}}}",
+        r"\toprule",
+        " & ".join(["Environment", "Policy", *(_latex(measure.heading) for measure in measures)]) + r" \\",
+    ]
+    for group in by_env(rows):
+        lines.append(r"\midrule")
+        for place, row in enumerate(group):
+            cells = [_latex_cell(row, measure, group) for measure in measures]
+            env = _latex(f"{row.env} ({row.episodes} episodes)") if place == 0 else ""
+            lines.append(" & ".join([env, _latex(row.policy), *cells]) + r" \\")
+    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", *(f"% {line}" for line in NOTE.split(". "))]) + "\n"
+
+
+def terminal_table(rows: Sequence[Row], width: int = 80) -> Group:
+    """Return the main measures for `rich.print`: a table per environment, one column per policy.
+
+    Args:
+        rows: Of the comparison.
+        width: Of the terminal; the intervals get lines of their own where it is short.
+    """
+    tables: list[Table | Text] = []
+    for group in by_env(rows):
+        table = Table(title=f"{group[0].env} · {group[0].episodes} episodes each", title_justify="left", min_width=40)
+        table.add_column("mean [95% interval]")
+        for row in group:
+            table.add_column(Text(row.policy), justify="right")
+        join = " " if 22 + 22 * len(group) <= width else "\n"
+        for measure in (measure for measure in _measured(group) if measure.main):
+            winners = best(group, measure)
+            table.add_row(Text(measure.heading), *(_terminal_cell(row, measure, winners, join) for row in group))
+        tables.append(table)
+    return Group(*tables)
+
+
+def _measured(rows: Sequence[Row]) -> list[Measure]:
+    return [measure for measure in MEASURES if any(measure.name in row.metrics for row in rows)]
+
+
+def _interval(row: Row, measure: Measure) -> Interval:
+    metric = row.metrics.get(measure.name)
+    return metric.interval if metric else Interval(math.nan, math.nan, math.nan)
+
+
+def _decimals(half: float, mean: float) -> int:
+    """Digits after the point: two of half the interval's width, or else three of the mean; at most three."""
+    spread = half if half > 0 else 0.0
+    digits = 1 if spread else 2
+    size = spread or abs(mean)
+    return min(3, max(0, digits - math.floor(math.log10(size)))) if size > 0 else 0
+
+
+def _rounded(value: float, decimals: int, signed: bool) -> str:
+    text = f"{value:+.{decimals}f}" if signed else f"{value:.{decimals}f}"
+    if not any(sign in "123456789" for sign in text):
+        text = text.lstrip("+-")  # no sign on a zero
+    return text.replace("-", "−")
+
+
+def _markdown_table(group: Sequence[Row], measures: Sequence[Measure], cell: Callable[[Row, Measure], str]) -> str:
+    lines = [
+        ["Policy", *(measure.heading for measure in measures)],
+        ["---", *("---:" for _ in measures)],
+        *([_cell(row.policy), *(cell(row, measure) for measure in measures)] for row in group),
+    ]
+    return "".join(f"| {' | '.join(line)} |\n" for line in lines)
+
+
+def _markdown_differences(group: Sequence[Row]) -> str:
+    first, others = group[0], group[1:]
+    measures = [measure for measure in _measured(group) if measure.main]
+    comparable = {measure.name: {row.policy for row in contenders(group, measure)} for measure in measures}
+
+    def cell(row: Row, measure: Measure) -> str:
+        if not {row.policy, first.policy} <= comparable[measure.name]:
+            return ABSENT
+        return _markdown_cell(difference(row, first, measure), measure, bold=False, signed=True)
+
+    return _markdown_table(others, [replace(measure, better=None) for measure in measures], cell)
+
+
+def _markdown_cell(interval: Interval, measure: Measure, bold: bool, signed: bool = False) -> str:
+    mean, bounds = interval_text(interval, measure, signed)
+    return f"{f'**{mean}**' if bold else mean} {bounds}".strip()
+
+
+def _cell(text: str) -> str:
+    """A name as Markdown's tables take it."""
+    return text.replace("\\", "\\\\").replace("|", "\\|").replace("_", "\\_").replace("*", "\\*")
+
+
+def _latex(text: str) -> str:
+    return "".join(LATEX_SIGNS.get(sign, sign) for sign in text)
+
+
+def _latex_cell(row: Row, measure: Measure, group: Sequence[Row]) -> str:
+    mean, bounds = (_latex(text) for text in interval_text(_interval(row, measure), measure))
+    if row.policy in best(group, measure):
+        mean = rf"\textbf{{{mean}}}"
+    return f"{mean} {bounds}".strip()
+
+
+def _terminal_cell(row: Row, measure: Measure, winners: set[str], join: str) -> Text:
+    mean, bounds = interval_text(_interval(row, measure), measure)
+    text = Text(mean, style="bold" if row.policy in winners else "")
+    return text.append(f"{join}{bounds}", style="not bold dim") if bounds else text

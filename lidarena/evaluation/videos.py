@@ -1,0 +1,89 @@
+"""Videos of episodes, written frame by frame: MP4 by OpenCV, GIF by Pillow."""
+
+from pathlib import Path
+from types import TracebackType
+from typing import Self
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+
+from lidarena.evaluation.participants import Env
+from lidarena.world.refusals import ConfigError
+
+SPEED = 4
+"""How many times faster than the simulated time a video plays."""
+
+GIF_FRAMES = 300
+GIF_WIDTH = 640
+
+
+class Film:
+    """A video of one episode; a context manager that finishes the file when it ends.
+
+    An MP4 is written frame by frame, so its length costs no memory. A GIF keeps at most `GIF_FRAMES` frames of at
+    most `GIF_WIDTH` pixels: whenever there are more, every other one is dropped, and the rest is shown longer.
+
+    Args:
+        path: The file; ``.mp4`` or ``.gif``.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+        self._writer: cv2.VideoWriter | None = None
+        self._stills: list[Image.Image] = []
+        self._stride = 1
+        self._count = 0
+        self._fps = 20.0
+
+    def __enter__(self) -> Self:
+        self.path.parent.mkdir(parents=True, exist_ok=True)
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._writer is not None:
+            self._writer.release()
+        if self._stills and kind is None:
+            duration = round(1000 * self._stride / self._fps)
+            self._stills[0].save(
+                self.path, save_all=True, append_images=self._stills[1:], duration=max(20, duration), loop=0
+            )
+
+    def add(self, env: Env) -> None:
+        """Append what the environment renders now.
+
+        Raises:
+            ConfigError: The environment renders nothing, or the file cannot be written.
+        """
+        frame = env.render()
+        if not isinstance(frame, np.ndarray):
+            raise ConfigError("'videos' is set, but an environment renders no pictures (render_mode 'rgb_array')")
+        if self._count == 0:
+            self._fps = SPEED * float(env.metadata.get("render_fps", 5))
+        if self.path.suffix == ".gif":
+            self._add_to_gif(frame)
+        else:
+            self._add_to_mp4(frame)
+        self._count += 1
+
+    def _add_to_gif(self, frame: NDArray[np.uint8]) -> None:
+        if self._count % self._stride:
+            return
+        still = Image.fromarray(frame)
+        still.thumbnail((GIF_WIDTH, GIF_WIDTH))
+        self._stills.append(still.quantize(64))
+        if len(self._stills) > GIF_FRAMES:
+            self._stills = self._stills[::2]
+            self._stride *= 2
+
+    def _add_to_mp4(self, frame: NDArray[np.uint8]) -> None:
+        height, width = (side - side % 2 for side in frame.shape[:2])  # codecs want even sides
+        if self._writer is None:
+            code = cv2.VideoWriter.fourcc(*"mp4v")
+            self._writer = cv2.VideoWriter(str(self.path), code, self._fps, (width, height))
+            if not self._writer.isOpened():
+                raise ConfigError(f"this OpenCV cannot write {self.path.name!r} as MP4; set 'videos' to gif or false")
+        self._writer.write(np.ascontiguousarray(frame[:height, :width, ::-1]))

@@ -1,0 +1,194 @@
+"""Driving along a grid path with a handful of commands, without touching what the map shows.
+
+At every planning instant the follower looks for the farthest point of the path that lies within ``lookahead`` and in
+free sight, and lets :func:`lidarena.planning.steering.steer` search the quickest safe commands to it. Between those
+instants it executes them one by one, having checked from the robot's *actual* pose that they still keep clear. As the
+search is optimal, planning again from a pose on the old sequence finds its rest: nothing swings to and fro.
+"""
+
+import math
+from dataclasses import dataclass, field
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from lidarena.planning.steering import Commands, Surroundings, gap_at, loiter_gap, move, steer, tightest
+
+_SHORTEST_CARROT = 0.4  # the carrot lies at least so far ahead on the path, in sight or not (m)
+
+
+@njit(cache=True, nogil=True)
+def _in_sight(
+    gap: NDArray[np.float32],
+    closed: NDArray[np.bool_],
+    frame: NDArray[np.float64],
+    start: NDArray[np.float64],
+    end: NDArray[np.float64],
+    margin: float,
+) -> bool:
+    dx, dy = end[0] - start[0], end[1] - start[1]
+    steps = max(1, math.ceil(math.hypot(dx, dy) / (0.5 * frame[2])))
+    for i in range(1, steps + 1):
+        if gap_at(gap, closed, frame, start[0] + dx * i / steps, start[1] + dy * i / steps) < margin:
+            return False
+    return True
+
+
+@njit(cache=True, nogil=True)
+def carrot(
+    path: NDArray[np.float64],
+    position: NDArray[np.float64],
+    gap: NDArray[np.float32],
+    closed: NDArray[np.bool_],
+    frame: NDArray[np.float64],
+    lookahead: float,
+    margin: float,
+) -> int:
+    """Return the index of the path's point to steer for.
+
+    Args:
+        path: (n, 2) x, y (m), n >= 1.
+        position: (2,) or longer, x, y of the robot.
+        gap: (rows, cols) clearance of the cells (m).
+        closed: (rows, cols) cells that are forbidden.
+        frame: (3,) x, y of the origin, side of a cell.
+        lookahead: How far along the path to look, counted from the point nearest to the robot (m).
+        margin: Clearance (m) of a line of sight.
+
+    Returns:
+        The farthest point in sight within ``lookahead``, at the least the one ``0.4`` m ahead.
+    """
+    nearest, best = 0, np.inf
+    for i in range(path.shape[0]):
+        distance = math.hypot(path[i, 0] - position[0], path[i, 1] - position[1])
+        if distance <= best:
+            nearest, best = i, distance
+    chosen, travelled = nearest, 0.0
+    for i in range(nearest + 1, path.shape[0]):
+        travelled += math.hypot(path[i, 0] - path[i - 1, 0], path[i, 1] - path[i - 1, 1])
+        if travelled > lookahead:
+            break
+        if travelled <= _SHORTEST_CARROT or _in_sight(gap, closed, frame, position, path[i], margin):
+            chosen = i
+    return chosen
+
+
+@dataclass
+class PathFollower:
+    """Turns a path into commands; keep one for the whole drive.
+
+    Attributes:
+        commands: What the robot can do.
+        margin: Clearance that every planned pose keeps (m). A smaller one is tried where this finds nothing.
+        least_margin: The smallest of these (m).
+        preferred: Clearance that is kept where there is room (m).
+        lookahead: How far along the path commands are searched (m).
+        reach: How near to the path's point is there (m); at the path's end ``end_reach``.
+        end_reach: How near to the end of the path is there (m).
+    """
+
+    commands: Commands
+    margin: float = 0.18
+    least_margin: float = 0.14
+    preferred: float = 0.4
+    lookahead: float = 1.5
+    reach: float = 0.15
+    end_reach: float = 0.25
+    _queue: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64), repr=False)
+
+    @property
+    def planned(self) -> NDArray[np.int64]:
+        """The commands that are still to come, (n,) indices."""
+        return self._queue
+
+    def clear(self) -> None:
+        """Forget the commands that are still to come."""
+        self._queue = np.empty(0, np.int64)
+
+    def plan(self, path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings) -> bool:
+        """Search commands along ``path``; what was planned before stays where nothing is found.
+
+        Args:
+            path: (n, 2) x, y (m), n >= 1, the end last.
+            pose: (3,) x, y, theta of the robot.
+            around: Its surroundings.
+
+        Returns:
+            Whether a sequence was found.
+        """
+        for margin in (self.margin, 0.5 * (self.margin + self.least_margin), self.least_margin):
+            for lookahead in (self.lookahead, 2.0 * self.lookahead, 0.5 * self.lookahead):
+                sequence = self._towards(path, pose, around, margin, lookahead)
+                if len(sequence):
+                    self._queue = sequence
+                    return True
+        return False
+
+    def _towards(
+        self,
+        path: NDArray[np.float64],
+        pose: NDArray[np.float64],
+        around: Surroundings,
+        margin: float,
+        lookahead: float,
+    ) -> NDArray[np.int64]:
+        index = carrot(path, pose, around.gap, around.closed, around.frame, lookahead, margin)
+        reach = self.end_reach if index == len(path) - 1 else self.reach
+        x, y = path[index]
+        return steer(around, pose, (float(x), float(y)), self.commands, margin, self.preferred, reach=reach)
+
+    def is_clear(self, pose: NDArray[np.float64], around: Surroundings, horizon: int = 20) -> bool:
+        """Return whether the next ``horizon`` planned commands keep ``least_margin``, driven from ``pose``.
+
+        A robot that stands nearer than that already must not get any nearer.
+        """
+        at = np.asarray(pose, np.float64)
+        here = gap_at(around.gap, around.closed, around.frame, at[0], at[1])
+        least = tightest(around.gap, around.closed, around.frame, at, self.commands.moves, self._queue[:horizon])
+        return bool(least >= min(self.least_margin, max(here, 0.0)) - 0.01)
+
+    def next(self) -> int | None:
+        """Take the next planned command; None if there is none."""
+        if not len(self._queue):
+            return None
+        command = int(self._queue[0])
+        self._queue = self._queue[1:]
+        return command
+
+    def loiter(self, pose: NDArray[np.float64], around: Surroundings) -> int:
+        """Return the turning command whose full circle keeps the most clearance; left where both keep ``margin``."""
+        at = np.asarray(pose, np.float64)
+        turns = [k for k, (_, w) in enumerate(self.commands.velocities) if w != 0.0]
+        turns.sort(key=lambda k: (-self.commands.velocities[k, 1], self.commands.velocities[k, 0]))
+
+        def room(k: int) -> float:
+            here = loiter_gap(around.gap, around.closed, around.frame, at, self.commands.velocities[k])
+            return min(float(here), self.margin)
+
+        return max(turns, key=room)  # the first of equals: the sharpest to the left
+
+
+def blocked_ahead(path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings, margin: float) -> bool:
+    """Return whether what remains of a path comes nearer than ``margin`` to an obstacle or into a closed cell.
+
+    Args:
+        path: (n, 2) x, y (m), n >= 1.
+        pose: (3,) x, y, theta of the robot; the path is looked at from its nearest point on, less the first 0.2 m.
+        around: The robot's surroundings.
+        margin: Least clearance (m).
+    """
+    away = np.hypot(path[:, 0] - pose[0], path[:, 1] - pose[1])
+    rest = path[int(np.argmin(away)) :]
+    rest = rest[np.hypot(rest[:, 0] - pose[0], rest[:, 1] - pose[1]) > 0.2]
+    return any(gap_at(around.gap, around.closed, around.frame, x, y) < margin for x, y in rest)
+
+
+def predict(pose: NDArray[np.float64], commands: Commands, sequence: NDArray[np.int64]) -> NDArray[np.float64]:
+    """Return the poses (n, 3) after each of a sequence (n,) of commands, headings not wrapped."""
+    here = np.array(pose, np.float64)
+    poses = np.empty((len(sequence), 3))
+    for i, command in enumerate(sequence):
+        move(here, commands.moves[command])
+        poses[i] = here
+    return poses

@@ -1,0 +1,339 @@
+"""The particle filter's kernel: prediction, update, selective resampling and the published map, world by world."""
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from lidarena.slam.likelihood_field import register_points
+from lidarena.slam.occupancy import OccupancyMaps, trace_scan
+from lidarena.slam.particle_filter_state import FilterParameters, FilterState
+from lidarena.slam.scan_matching import invert, match
+from lidarena.slam.scan_points import extract_points
+from lidarena.slam.uncertainty import d_optimality, pose_moments, weight_entropy
+from lidarena.world.odometry import deviations, move
+from lidarena.world.random_streams import normal, uniform
+
+_LEAST_VARIANCE = 1e-8
+"""Added to the odometry's covariance (m², rad²), so that a robot at rest has an invertible prior."""
+
+
+@njit(cache=True, nogil=True)
+def step_filters(
+    first: int,
+    last: int,
+    duration: float,
+    resolution: float,
+    max_range: float,
+    directions: NDArray[np.float64],
+    parameters: FilterParameters,
+    readings: NDArray[np.float64],
+    scans: NDArray[np.float32],
+    streams: NDArray[np.uint64],
+    state: FilterState,
+    maps: OccupancyMaps,
+) -> None:
+    """Advance the filters of worlds first … last - 1 by one odometry reading and, where due, one scan.
+
+    Args:
+        first: First world.
+        last: World after the last.
+        duration: Time since the last call [s].
+        resolution: Of the grids [m].
+        max_range: Ranges from here on are no returns [m].
+        directions: (2, beams) cos and sin of the beams' angles.
+        parameters: The filters' settings.
+        readings: (W, 3) odometry in the robots' frames before the motion.
+        scans: (W, beams) ranges after it [m].
+        streams: (W, 4) random streams.
+        state: The filters.
+        maps: The published maps.
+    """
+    for w in range(first, last):
+        predict(w, duration, readings[w], parameters, streams[w], state)
+        due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
+        if due or state.since[w, 2] > parameters.temporal_update:
+            update(w, resolution, max_range, directions, parameters, scans[w], streams[w], state, maps)
+        _summarise(w, state)
+
+
+@njit(cache=True, nogil=True)
+def predict(
+    w: int,
+    duration: float,
+    reading: NDArray[np.float64],
+    parameters: FilterParameters,
+    stream: NDArray[np.uint64],
+    state: FilterState,
+) -> None:
+    """Move world w's particles by an odometry reading (3,) with sampled noise, and add up motion and covariance."""
+    dx, dy, dtheta = reading
+    sx, sy, st = deviations(parameters.noise, dx, dy, dtheta)
+    for i in range(parameters.particles):
+        move(state.particles[w, i], dx + sx * normal(stream), dy + sy * normal(stream), dtheta + st * normal(stream))
+    _compound_covariance(state.motion[w], state.motion_covariance[w], dx, dy, sx * sx, sy * sy, st * st)
+    move(state.motion[w], dx, dy, dtheta)
+    state.since[w, 0] += math.hypot(dx, dy)
+    state.since[w, 1] += abs(dtheta)
+    state.since[w, 2] += duration
+
+
+@njit(cache=True, nogil=True)
+def _compound_covariance(
+    motion: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    vt: float,
+) -> None:
+    """Covariance (3, 3) of a motion (3,) followed by a reading (dx, dy) with variances vx, vy, vt in its own frame."""
+    cos, sin = math.cos(motion[2]), math.sin(motion[2])
+    lever = (-sin * dx - cos * dy, cos * dx - sin * dy)
+    for k in range(2):  # J Σ Jᵀ with J = [[1, 0, lever₀], [0, 1, lever₁], [0, 0, 1]]: first the rows, then the columns
+        for j in range(3):
+            covariance[k, j] += lever[k] * covariance[2, j]
+    for k in range(2):
+        for j in range(3):
+            covariance[j, k] += lever[k] * covariance[j, 2]
+    covariance[0, 0] += cos * cos * vx + sin * sin * vy
+    covariance[1, 1] += sin * sin * vx + cos * cos * vy
+    covariance[0, 1] += cos * sin * (vx - vy)
+    covariance[1, 0] += cos * sin * (vx - vy)
+    covariance[2, 2] += vt
+
+
+@njit(cache=True, nogil=True)
+def update(
+    w: int,
+    resolution: float,
+    max_range: float,
+    directions: NDArray[np.float64],
+    parameters: FilterParameters,
+    scan: NDArray[np.float32],
+    stream: NDArray[np.uint64],
+    state: FilterState,
+    maps: OccupancyMaps,
+) -> None:
+    """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample where N_eff is low."""
+    beams = scan.shape[0]
+    points, normals = np.empty((beams, 2)), np.empty((beams, 2))
+    flat = np.empty(beams, np.bool_)
+    count = extract_points(scan, directions, max_range, points, normals, flat)
+    angles = np.empty(beams)
+    for i in range(count):
+        angles[i] = math.atan2(normals[i, 1], normals[i, 0])
+    chosen = _choose(flat, count, parameters.matcher.points)
+    local = np.empty((3, 3))
+    covariance = state.motion_covariance[w].copy()
+    for k in range(3):
+        covariance[k, k] += _LEAST_VARIANCE
+    invert(covariance, local)
+    prior, information, posterior = np.empty(3), np.empty((3, 3)), np.empty((3, 3))
+    for i in range(parameters.particles):
+        prior[:] = state.anchors[w, i]
+        _rotate(local, prior[2], information)
+        move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
+        likelihood = match(
+            state.fields[w, i], maps.origin[w], resolution, chosen, points, normals, angles,
+            parameters.matcher, prior, information, state.particles[w, i], posterior,
+        )  # fmt: skip
+        state.log_weights[w, i] += parameters.likelihood_gain * likelihood
+        _draw(state.particles[w, i], posterior, stream)
+        register_points(
+            state.fields[w, i], state.particles[w, i], maps.origin[w], resolution, count, points, angles, state.box[w]
+        )
+        state.anchors[w, i] = state.particles[w, i]
+    _normalise(w, state)
+    _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
+    if state.criteria[w, 2] < parameters.resample_share * parameters.particles:
+        _resample(w, stream, state)
+    state.motion[w] = 0.0
+    state.motion_covariance[w] = 0.0
+    state.since[w] = 0.0
+
+
+@njit(cache=True, nogil=True)
+def _choose(flat: NDArray[np.bool_], count: int, most: int) -> NDArray[np.int64]:
+    """Indices of at most ``most`` points with a normal, evenly over the scan."""
+    usable = np.flatnonzero(flat[:count])
+    if usable.shape[0] <= most:
+        return usable
+    chosen = np.empty(most, np.int64)
+    for i in range(most):
+        chosen[i] = usable[i * usable.shape[0] // most]
+    return chosen
+
+
+@njit(cache=True, nogil=True)
+def _rotate(local: NDArray[np.float64], theta: float, out: NDArray[np.float64]) -> None:
+    """Information (3, 3) of a motion in the frame of heading ``theta``, expressed in the world's frame."""
+    cos, sin = math.cos(theta), math.sin(theta)
+    a, b, c, d, e = local[0, 0], local[0, 1], local[0, 2], local[1, 1], local[1, 2]
+    out[0, 0] = cos * cos * a - 2.0 * cos * sin * b + sin * sin * d
+    out[1, 1] = sin * sin * a + 2.0 * cos * sin * b + cos * cos * d
+    out[0, 1] = out[1, 0] = cos * sin * (a - d) + (cos * cos - sin * sin) * b
+    out[0, 2] = out[2, 0] = cos * c - sin * e
+    out[1, 2] = out[2, 1] = sin * c + cos * e
+    out[2, 2] = local[2, 2]
+
+
+@njit(cache=True, nogil=True)
+def _draw(pose: NDArray[np.float64], information: NDArray[np.float64], stream: NDArray[np.uint64]) -> None:
+    """Replace ``pose`` (3,) by a sample of the Gaussian around it, given its information matrix A = L Lᵀ: x + L⁻ᵀ z."""
+    l00 = math.sqrt(information[0, 0])
+    l10, l20 = information[1, 0] / l00, information[2, 0] / l00
+    l11 = math.sqrt(max(information[1, 1] - l10 * l10, 1e-12))
+    l21 = (information[2, 1] - l20 * l10) / l11
+    l22 = math.sqrt(max(information[2, 2] - l20 * l20 - l21 * l21, 1e-12))
+    z2 = normal(stream) / l22
+    z1 = (normal(stream) - l21 * z2) / l11
+    z0 = (normal(stream) - l10 * z1 - l20 * z2) / l00
+    move(pose, 0.0, 0.0, z2)
+    pose[0] += z0
+    pose[1] += z1
+
+
+@njit(cache=True, nogil=True)
+def _normalise(w: int, state: FilterState) -> None:
+    """Normalise world w's weights and compute their entropy and N_eff."""
+    n = state.log_weights.shape[1]
+    top = state.log_weights[w].max()
+    total = 0.0
+    for i in range(n):
+        state.log_weights[w, i] -= top
+        state.weights[w, i] = math.exp(state.log_weights[w, i])
+        total += state.weights[w, i]
+    squares = 0.0
+    for i in range(n):
+        state.weights[w, i] /= total
+        squares += state.weights[w, i] ** 2
+    state.criteria[w, 1] = weight_entropy(state.weights[w])
+    state.criteria[w, 2] = 1.0 / squares
+
+
+@njit(cache=True, nogil=True)
+def _publish(
+    w: int,
+    resolution: float,
+    max_range: float,
+    directions: NDArray[np.float64],
+    parameters: FilterParameters,
+    scan: NDArray[np.float32],
+    state: FilterState,
+    maps: OccupancyMaps,
+) -> None:
+    """Remember the scan and trace it from the best particle, tracing anew the past scans in which that one differs."""
+    history = parameters.history
+    now = state.updates[w]
+    slot = now % history
+    state.node_poses[w, slot] = state.particles[w]
+    state.node_scans[w, slot] = scan
+    for i in range(parameters.particles):
+        state.node_parents[w, slot, i] = state.ancestors[w, i]
+        state.ancestors[w, i] = i
+    best = _best_particle(w, slot, now, parameters, state)
+    trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, 1)
+    state.published[w, slot] = best
+    parent = np.int64(state.node_parents[w, slot, best])
+    past = now - 1
+    while past >= 0 and past > now - history and state.published[w, past % history] != parent:
+        slot = past % history
+        shown, node = state.published[w, slot], state.node_poses[w, slot]
+        trace_scan(maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, -1)
+        trace_scan(maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, 1)
+        state.published[w, slot] = parent
+        parent = np.int64(state.node_parents[w, slot, parent])
+        past -= 1
+    state.updates[w] = now + 1
+
+
+@njit(cache=True, nogil=True)
+def _best_particle(w: int, slot: int, now: int, parameters: FilterParameters, state: FilterState) -> int:
+    """The likeliest particle, or the likeliest descendant of the published one unless it is ``loyalty`` times less likely."""
+    best = int(np.argmax(state.weights[w]))
+    if now == 0:
+        return best
+    shown = state.published[w, (now - 1) % parameters.history]
+    heir = -1
+    for i in range(parameters.particles):
+        if state.node_parents[w, slot, i] == shown and (heir < 0 or state.weights[w, i] > state.weights[w, heir]):
+            heir = i
+    if heir >= 0 and state.weights[w, heir] * parameters.loyalty >= state.weights[w, best]:
+        return heir
+    return best
+
+
+@njit(cache=True, nogil=True)
+def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
+    """Systematic resampling; survivors stay where they are, their copies overwrite the dead."""
+    n = state.weights.shape[1]
+    copies = np.zeros(n, np.int64)
+    cursor, total = uniform(stream) / n, 0.0
+    for i in range(n):
+        total += state.weights[w, i]
+        while cursor < total and copies.sum() < n:
+            copies[i] += 1
+            cursor += 1.0 / n
+    copies[n - 1] += n - copies.sum()
+    r0, r1, c0, c1 = state.box[w]
+    dead = 0
+    for i in range(n):
+        for _ in range(copies[i] - 1):
+            while copies[dead] > 0:
+                dead += 1
+            state.particles[w, dead] = state.particles[w, i]
+            state.anchors[w, dead] = state.anchors[w, i]
+            state.ancestors[w, dead] = i
+            state.fields[w, dead, r0:r1, c0:c1] = state.fields[w, i, r0:r1, c0:c1]
+            dead += 1
+    state.log_weights[w] = 0.0
+    state.weights[w] = 1.0 / n
+
+
+@njit(cache=True, nogil=True)
+def _summarise(w: int, state: FilterState) -> None:
+    """Mean pose, covariance and D-optimality of world w."""
+    pose_moments(state.particles[w], state.weights[w], state.estimate[w], state.covariance[w])
+    state.criteria[w, 0] = d_optimality(state.covariance[w])
+
+
+@njit(cache=True, nogil=True)
+def start_filter(
+    w: int,
+    resolution: float,
+    max_range: float,
+    directions: NDArray[np.float64],
+    parameters: FilterParameters,
+    pose: NDArray[np.float64],
+    scan: NDArray[np.float32],
+    state: FilterState,
+    maps: OccupancyMaps,
+) -> None:
+    """Forget world w's past and start at a known pose (3,) with its first scan (beams,)."""
+    r0, r1, c0, c1 = state.box[w]
+    rows, columns = state.fields.shape[2:]
+    beams = scan.shape[0]
+    points, normals = np.empty((beams, 2)), np.empty((beams, 2))
+    count = extract_points(scan, directions, max_range, points, normals, np.empty(beams, np.bool_))
+    angles = np.empty(beams)
+    for i in range(count):
+        angles[i] = math.atan2(normals[i, 1], normals[i, 0])
+    state.box[w, 0], state.box[w, 1], state.box[w, 2], state.box[w, 3] = rows, 0, columns, 0
+    for i in range(parameters.particles):
+        if r1 > r0:
+            state.fields[w, i, r0:r1, c0:c1] = 0
+        state.particles[w, i] = pose
+        state.anchors[w, i] = pose
+        state.ancestors[w, i] = i
+        register_points(state.fields[w, i], pose, maps.origin[w], resolution, count, points, angles, state.box[w])
+    state.log_weights[w] = 0.0
+    state.motion[w] = 0.0
+    state.motion_covariance[w] = 0.0
+    state.since[w] = 0.0
+    state.updates[w] = 0
+    _normalise(w, state)
+    _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
+    _summarise(w, state)

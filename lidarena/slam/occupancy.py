@@ -1,0 +1,128 @@
+"""The published map: an occupancy grid that counts, for every cell, how often beams ended in it and passed it.
+
+A scan that was traced can be taken back exactly, since the counts are integers: when another particle turns out to be the
+best, only the scans in which its past differs are traced anew (gmapping traces its whole past instead).
+"""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+OCCUPIED_SHARE = 0.25
+"""A cell is occupied where more than this share of the beams that reached it ended there (gmapping's threshold)."""
+_ONE = 65536  # fixed-point unit of the ray's steps
+
+
+class OccupancyMaps(NamedTuple):
+    """Occupancy grids of a batch, ``(worlds, rows, columns)``, row 0 at the smallest y.
+
+    Attributes:
+        counts: (worlds, rows, columns, 2) int32: beams that ended in a cell, beams that reached it.
+        occupancy: int8: -1 unknown, 0 free, 100 occupied.
+        wanted: (plans, rows, columns) uint8: 1 where a known cell counts as covered, else 0.
+        plan: (worlds,) which of ``wanted`` a world uses.
+        covered: (worlds,) number of known cells among the wanted.
+        origin: (worlds, 2) lower-left corner of each grid [m].
+    """
+
+    counts: NDArray[np.int32]
+    occupancy: NDArray[np.int8]
+    wanted: NDArray[np.uint8]
+    plan: NDArray[np.int64]
+    covered: NDArray[np.int64]
+    origin: NDArray[np.float64]
+
+
+def empty_maps(worlds: int, wanted: NDArray[np.uint8]) -> OccupancyMaps:
+    """Unknown maps for ``worlds`` worlds, as large as ``wanted`` (plans, rows, columns)."""
+    rows, columns = wanted.shape[1:]
+    return OccupancyMaps(
+        np.zeros((worlds, rows, columns, 2), np.int32),
+        np.full((worlds, rows, columns), -1, np.int8),
+        wanted,
+        np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.int64),
+        np.zeros((worlds, 2)),
+    )
+
+
+def clear_map(maps: OccupancyMaps, world: int, plan: int, origin: NDArray[np.float64]) -> None:
+    """Forget everything that one world's map knows."""
+    maps.counts[world] = 0
+    maps.occupancy[world] = -1
+    maps.plan[world] = plan
+    maps.covered[world] = 0
+    maps.origin[world] = origin
+
+
+@njit(cache=True, nogil=True)
+def trace_scan(
+    maps: OccupancyMaps,
+    world: int,
+    resolution: float,
+    pose: NDArray[np.float64],
+    scan: NDArray[np.float32],
+    directions: NDArray[np.float64],
+    max_range: float,
+    sign: int,
+) -> None:
+    """Trace a scan's beams into a world's map, or take them back.
+
+    A beam without return frees the cells up to ``max_range``.
+
+    Args:
+        maps: The grids.
+        world: Which one.
+        resolution: [m].
+        pose: (3,) where the scan was taken.
+        scan: (beams,) ranges [m].
+        directions: (2, beams) cos and sin of the beams' angles.
+        max_range: Ranges from here on are no returns [m].
+        sign: +1 traces, -1 takes back what +1 traced with the same arguments.
+    """
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    start_u = (pose[0] - maps.origin[world, 0]) / resolution
+    start_v = (pose[1] - maps.origin[world, 1]) / resolution
+    counts, occupancy = maps.counts[world], maps.occupancy[world]
+    wanted = maps.wanted[maps.plan[world]]
+    rows, columns = occupancy.shape
+    change = 0
+    for k in range(scan.shape[0]):
+        reach = min(scan[k], max_range) / resolution
+        du = reach * (directions[0, k] * cos - directions[1, k] * sin)
+        dv = reach * (directions[0, k] * sin + directions[1, k] * cos)
+        end_c, end_r = int(math.floor(start_u + du)), int(math.floor(start_v + dv))
+        steps = int(max(abs(du), abs(dv))) + 1
+        u, v = int(start_u * _ONE), int(start_v * _ONE)
+        step_u, step_v = int(du / steps * _ONE), int(dv / steps * _ONE)
+        for _ in range(steps):
+            c, r = u >> 16, v >> 16
+            if (c != end_c or r != end_r) and 0 <= c < columns and 0 <= r < rows:
+                change += _count(counts, occupancy, wanted, r, c, 0, sign)
+            u, v = u + step_u, v + step_v
+        if 0 <= end_c < columns and 0 <= end_r < rows:
+            change += _count(counts, occupancy, wanted, end_r, end_c, 1 if scan[k] < max_range else 0, sign)
+    maps.covered[world] += change
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _count(
+    counts: NDArray[np.int32],
+    occupancy: NDArray[np.int8],
+    wanted: NDArray[np.uint8],
+    r: int,
+    c: int,
+    hit: int,
+    sign: int,
+) -> int:
+    """Count one beam in a cell and return the change in covered cells."""
+    hits, visits = counts[r, c, 0] + sign * hit, counts[r, c, 1] + sign
+    counts[r, c, 0], counts[r, c, 1] = hits, visits
+    if visits <= 0:
+        occupancy[r, c] = -1
+        return -np.int64(wanted[r, c])
+    occupancy[r, c] = 100 if hits > OCCUPIED_SHARE * visits else 0
+    return np.int64(wanted[r, c]) if visits == 1 and sign > 0 else 0

@@ -1,0 +1,86 @@
+"""Rao-Blackwellised particle filter: every particle a trajectory with its own map (Grisetti et al. 2007).
+
+Between scans the particles follow the odometry with sampled noise. When the robot has moved, turned or waited enough, each
+particle is matched against its own map and drawn anew from the Gaussian around the match (the improved proposal), weighted
+by how well scan and odometry agree with its map, and the set is resampled only where N_eff has fallen (selective resampling).
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.slam.filter_kernel import start_filter, step_filters
+from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
+from lidarena.slam.particle_filter_state import FilterParameters, FilterState, empty_state
+
+
+class ParticleFilters:
+    """A batch of particle filters, one a world.
+
+    Args:
+        worlds: Number of filters.
+        wanted: (plans, rows, columns) cells that count as covered once known; its shape is that of every grid.
+        directions: (2, beams) cos and sin of the beams' angles.
+        max_range: Ranges from here on are no returns [m].
+        resolution: Side of a cell [m].
+        parameters: Settings.
+
+    Attributes:
+        maps: The published occupancy grids, traced from each filter's best particle.
+        state: The filters' arrays.
+    """
+
+    def __init__(
+        self,
+        worlds: int,
+        wanted: NDArray[np.uint8],
+        directions: NDArray[np.float64],
+        max_range: float,
+        resolution: float = 0.05,
+        parameters: FilterParameters | None = None,
+    ) -> None:
+        self.parameters = parameters or FilterParameters()
+        self.resolution = resolution
+        self._directions, self._max_range = directions, max_range
+        rows, columns = wanted.shape[1:]
+        self.maps: OccupancyMaps = empty_maps(worlds, wanted)
+        self.state: FilterState = empty_state(worlds, rows, columns, directions.shape[1], self.parameters)
+
+    def start(
+        self,
+        world: int,
+        plan: int,
+        origin: NDArray[np.float64],
+        pose: NDArray[np.float64],
+        scan: NDArray[np.float32],
+    ) -> None:
+        """Start one filter anew.
+
+        Args:
+            world: Which filter.
+            plan: Which of ``wanted`` it covers.
+            origin: (2,) lower-left corner of its grids [m].
+            pose: (3,) where the robot stands; the frame of everything that follows.
+            scan: (beams,) its first scan [m].
+        """
+        clear_map(self.maps, world, plan, origin)
+        start_filter(
+            world, self.resolution, self._max_range, self._directions, self.parameters, pose, scan, self.state, self.maps
+        )
+
+    def step(
+        self,
+        first: int,
+        last: int,
+        duration: float,
+        readings: NDArray[np.float64],
+        scans: NDArray[np.float32],
+        streams: NDArray[np.uint64],
+    ) -> None:
+        """Advance filters first … last - 1 by one odometry reading (W, 3) and, where due, one scan (W, beams).
+
+        Disjoint ranges may be advanced by different threads at once.
+        """
+        step_filters(
+            first, last, duration, self.resolution, self._max_range, self._directions, self.parameters,
+            readings, scans, streams, self.state, self.maps,
+        )  # fmt: skip

@@ -1,0 +1,106 @@
+"""What a batch of particle filters is made of: its settings and its arrays."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.slam.scan_matching import MatcherParameters
+from lidarena.world.odometry import OdometryNoise
+
+
+class FilterParameters(NamedTuple):
+    """Settings of the filter; the update rule is turtlebot3_slam's.
+
+    Attributes:
+        particles: N.
+        linear_update: A scan is processed when the robot travelled this far [m], …
+        angular_update: … or turned this far [rad], …
+        temporal_update: … or when more than this has passed [s]; infinity switches the clock off.
+        resample_share: Resample when N_eff falls below this share of N.
+        likelihood_gain: Factor on the scans' log-likelihood; neighbouring beams err together, so below 1.
+        loyalty: The published map leaves its particle's descendants only for one this many times as likely.
+        history: Scans that the published map can take back.
+        noise: The odometry's noise, per reading.
+        matcher: The scan matcher's settings.
+    """
+
+    particles: int = 30
+    linear_update: float = 1.0
+    angular_update: float = 0.2
+    temporal_update: float = 0.5
+    resample_share: float = 0.5
+    likelihood_gain: float = 0.3
+    loyalty: float = 3.0
+    history: int = 256
+    noise: OdometryNoise = OdometryNoise()
+    matcher: MatcherParameters = MatcherParameters()
+
+
+class FilterState(NamedTuple):
+    """Arrays of a batch of filters: ``W`` worlds, ``N`` particles, ``H`` scans of history, grids of ``R`` × ``C`` cells.
+
+    Attributes:
+        fields: (W, N, R, C) uint16, the particles' likelihood fields.
+        box: (W, 4) rows and columns of the fields that hold anything.
+        particles: (W, N, 3) poses.
+        anchors: (W, N, 3) poses at the last processed scan.
+        log_weights: (W, N).
+        weights: (W, N) normalised.
+        motion: (W, 3) odometry since the last processed scan, in the robot's frame then.
+        motion_covariance: (W, 3, 3) of it.
+        since: (W, 3) distance [m], turn [rad] and time [s] since then.
+        ancestors: (W, N) which particle of the last scan each one continues.
+        node_poses: (W, H, N, 3) poses at past scans, a ring over scans.
+        node_parents: (W, H, N) which particle of the scan before each one continues.
+        node_scans: (W, H, beams) float32.
+        published: (W, H) particle whose pose each scan was traced from.
+        updates: (W,) scans processed.
+        estimate: (W, 3) weighted mean pose.
+        covariance: (W, 3, 3).
+        criteria: (W, 3) D-optimality, entropy of the weights, N_eff.
+    """
+
+    fields: NDArray[np.uint16]
+    box: NDArray[np.int64]
+    particles: NDArray[np.float64]
+    anchors: NDArray[np.float64]
+    log_weights: NDArray[np.float64]
+    weights: NDArray[np.float64]
+    motion: NDArray[np.float64]
+    motion_covariance: NDArray[np.float64]
+    since: NDArray[np.float64]
+    ancestors: NDArray[np.int64]
+    node_poses: NDArray[np.float64]
+    node_parents: NDArray[np.int16]
+    node_scans: NDArray[np.float32]
+    published: NDArray[np.int16]
+    updates: NDArray[np.int64]
+    estimate: NDArray[np.float64]
+    covariance: NDArray[np.float64]
+    criteria: NDArray[np.float64]
+
+
+def empty_state(worlds: int, rows: int, columns: int, beams: int, parameters: FilterParameters) -> FilterState:
+    """Allocate the arrays of ``worlds`` filters on grids of rows × columns cells."""
+    n, h = parameters.particles, parameters.history
+    return FilterState(
+        fields=np.zeros((worlds, n, rows, columns), np.uint16),
+        box=np.tile(np.array([rows, 0, columns, 0]), (worlds, 1)),
+        particles=np.zeros((worlds, n, 3)),
+        anchors=np.zeros((worlds, n, 3)),
+        log_weights=np.zeros((worlds, n)),
+        weights=np.full((worlds, n), 1.0 / n),
+        motion=np.zeros((worlds, 3)),
+        motion_covariance=np.zeros((worlds, 3, 3)),
+        since=np.zeros((worlds, 3)),
+        ancestors=np.tile(np.arange(n), (worlds, 1)),
+        node_poses=np.zeros((worlds, h, n, 3)),
+        node_parents=np.zeros((worlds, h, n), np.int16),
+        node_scans=np.zeros((worlds, h, beams), np.float32),
+        published=np.zeros((worlds, h), np.int16),
+        updates=np.zeros(worlds, np.int64),
+        estimate=np.zeros((worlds, 3)),
+        covariance=np.zeros((worlds, 3, 3)),
+        criteria=np.zeros((worlds, 3)),
+    )

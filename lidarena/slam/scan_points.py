@@ -1,0 +1,111 @@
+"""From a scan to the points that are matched: neighbouring beams averaged, with the surface's normal at each."""
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+SPACING = 0.04
+"""Beams are averaged over this length of wall [m]; a cell is 0.05 m, more points would say nothing new."""
+JUMP = 0.2
+"""Consecutive points farther apart than this belong to different surfaces [m]."""
+NORMAL_WINDOW = 0.16
+"""A normal is fitted to the points this far to both sides [m]."""
+FLATNESS = 0.08
+"""Largest ratio of the fitted points' variances across and along the wall; corners exceed it and get no normal."""
+
+
+@njit(cache=True, nogil=True)
+def extract_points(
+    scan: NDArray[np.float32],
+    directions: NDArray[np.float64],
+    max_range: float,
+    points: NDArray[np.float64],
+    normals: NDArray[np.float64],
+    flat: NDArray[np.bool_],
+) -> int:
+    """Average a scan's hits into points and fit normals; returns how many points there are.
+
+    Args:
+        scan: (beams,) ranges [m]; ``max_range`` and above means no return.
+        directions: (2, beams) cos and sin of the beams' angles.
+        max_range: [m].
+        points: (beams, 2) output, in the sensor's frame.
+        normals: (beams, 2) output, unit, towards the sensor; where ``flat`` is False it only points back along the beam.
+        flat: (beams,) output, whether the normal was fitted.
+    """
+    surface = np.empty(scan.shape[0], np.int64)
+    count = _average_hits(scan, directions, max_range, points, surface)
+    for i in range(count):
+        flat[i] = _fit_normal(i, count, points, surface, normals)
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _average_hits(
+    scan: NDArray[np.float32],
+    directions: NDArray[np.float64],
+    max_range: float,
+    points: NDArray[np.float64],
+    surface: NDArray[np.int64],
+) -> int:
+    """Average runs of hits shorter than ``SPACING``; ``surface`` (beams,) numbers the unbroken surfaces."""
+    count = number = members = 0
+    first_x = first_y = last_x = last_y = sum_x = sum_y = 0.0
+    for k in range(scan.shape[0]):
+        hit = scan[k] < max_range and scan[k] > 0.0
+        x, y = scan[k] * directions[0, k], scan[k] * directions[1, k]
+        jump = members > 0 and math.hypot(x - last_x, y - last_y) > JUMP
+        full = members > 0 and math.hypot(x - first_x, y - first_y) >= SPACING
+        if members > 0 and (jump or full or not hit):
+            points[count, 0], points[count, 1] = sum_x / members, sum_y / members
+            surface[count] = number
+            count += 1
+            members = 0
+            if jump or not hit:
+                number += 1
+        if hit:
+            if members == 0:
+                first_x, first_y, sum_x, sum_y = x, y, 0.0, 0.0
+            sum_x, sum_y, last_x, last_y = sum_x + x, sum_y + y, x, y
+            members += 1
+    if members > 0:
+        points[count, 0], points[count, 1] = sum_x / members, sum_y / members
+        surface[count] = number
+        count += 1
+    return count
+
+
+@njit(cache=True, nogil=True)
+def _fit_normal(
+    i: int, count: int, points: NDArray[np.float64], surface: NDArray[np.int64], normals: NDArray[np.float64]
+) -> bool:
+    """Fit a line to the neighbours of point ``i`` on its surface; returns False where they are too few or bent."""
+    px, py = points[i]
+    away = max(math.hypot(px, py), 1e-9)
+    normals[i, 0], normals[i, 1] = -px / away, -py / away
+    n, sx, sy, sxx, sxy, syy = 0, 0.0, 0.0, 0.0, 0.0, 0.0
+    for step in (-1, 1):
+        j = i if step == -1 else i + 1
+        while 0 <= j < count and surface[j] == surface[i]:
+            dx, dy = points[j, 0] - px, points[j, 1] - py
+            if dx * dx + dy * dy > NORMAL_WINDOW * NORMAL_WINDOW:
+                break
+            n += 1
+            sx, sy = sx + dx, sy + dy
+            sxx, sxy, syy = sxx + dx * dx, sxy + dx * dy, syy + dy * dy
+            j += step
+    if n < 3:
+        return False
+    sxx, sxy, syy = sxx / n - sx * sx / (n * n), sxy / n - sx * sy / (n * n), syy / n - sy * sy / (n * n)
+    mean, half = 0.5 * (sxx + syy), 0.5 * (sxx - syy)
+    root = math.sqrt(half * half + sxy * sxy)
+    if mean - root > FLATNESS * (mean + root):
+        return False
+    angle = 0.5 * math.atan2(sxy, half) + 0.5 * math.pi  # across the longest axis
+    nx, ny = math.cos(angle), math.sin(angle)
+    if nx * px + ny * py > 0.0:
+        nx, ny = -nx, -ny
+    normals[i, 0], normals[i, 1] = nx, ny
+    return True

@@ -1,0 +1,80 @@
+"""How uncertain a pose is: the optimality criteria of optimal experimental design, and the weights' entropy."""
+
+import math
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+COVARIANCE_FLOOR = (4e-6, 4e-6, 1e-6)
+"""Added to the diagonal of a pose's covariance (m², m², rad²): what the scan matcher itself leaves open, 2 mm and 1 mrad,
+so that a filter whose particles coincide is certain but never singular."""
+
+
+@njit(cache=True, nogil=True)
+def d_optimality(covariance: NDArray[np.float64]) -> float:
+    """D-optimality det(Σ)^(1/l) = exp(mean ln λ_k) of a 3×3 pose covariance; geometric mean of its eigenvalues."""
+    a, b, c = covariance[0, 0], covariance[0, 1], covariance[0, 2]
+    d, e, f = covariance[1, 1], covariance[1, 2], covariance[2, 2]
+    determinant = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
+    return max(determinant, 0.0) ** (1.0 / 3.0)
+
+
+def a_optimality(covariance: NDArray[np.float64]) -> float:
+    """A-optimality trace(Σ)/l, the mean eigenvalue."""
+    return float(np.trace(covariance) / len(covariance))
+
+
+def e_optimality(covariance: NDArray[np.float64]) -> float:
+    """E-optimality, the largest eigenvalue of Σ."""
+    return float(np.linalg.eigvalsh(covariance)[-1])
+
+
+@njit(cache=True, nogil=True)
+def weight_entropy(weights: NDArray[np.float64]) -> float:
+    """Entropy −Σ w ln w of normalised weights (N,) [nat]; at most ln N."""
+    total = 0.0
+    for w in weights:
+        if w > 0.0:
+            total -= w * math.log(w)
+    return total
+
+
+@njit(cache=True, nogil=True)
+def pose_moments(
+    particles: NDArray[np.float64],
+    weights: NDArray[np.float64],
+    mean: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+) -> None:
+    """Weighted mean (3,) and covariance (3, 3) of poses (N, 3), the heading averaged on the circle, plus the floor.
+
+    Args:
+        particles: (N, 3) x, y, theta.
+        weights: (N,) normalised.
+        mean: (3,) output.
+        covariance: (3, 3) output.
+    """
+    x = y = cos = sin = 0.0
+    for i in range(particles.shape[0]):
+        x += weights[i] * particles[i, 0]
+        y += weights[i] * particles[i, 1]
+        cos += weights[i] * math.cos(particles[i, 2])
+        sin += weights[i] * math.sin(particles[i, 2])
+    theta = math.atan2(sin, cos)
+    mean[0], mean[1], mean[2] = x, y, theta
+    covariance[:] = 0.0
+    for i in range(particles.shape[0]):
+        dx, dy = particles[i, 0] - x, particles[i, 1] - y
+        dt = particles[i, 2] - theta
+        dt -= 2.0 * math.pi * math.floor((dt + math.pi) / (2.0 * math.pi))
+        w = weights[i]
+        covariance[0, 0] += w * dx * dx
+        covariance[0, 1] += w * dx * dy
+        covariance[0, 2] += w * dx * dt
+        covariance[1, 1] += w * dy * dy
+        covariance[1, 2] += w * dy * dt
+        covariance[2, 2] += w * dt * dt
+    covariance[1, 0], covariance[2, 0], covariance[2, 1] = covariance[0, 1], covariance[0, 2], covariance[1, 2]
+    for k in range(3):
+        covariance[k, k] += COVARIANCE_FLOOR[k]

@@ -1,0 +1,1 @@
+"""The world: floor plans, pymunk physics, robots, lidar, noise and drawing."""

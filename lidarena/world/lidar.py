@@ -1,0 +1,316 @@
+"""The lidar: all beams of all robots against the floor plans, in one kernel.
+
+A scan's beams leave one point at equal angles, so an edge seen from there covers one run of consecutive beams. The
+kernel therefore visits edges, not rays: it finds the run from the angles of the edge's two ends, and along the run the
+*inverse* range to a line is linear in the beam's direction, ``1/t = A cos φ + B sin φ``, so the inner loop is two
+multiplications and a maximum. Which edges can matter at all is looked up by the tile that the robot stands in.
+"""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.random_streams import normal
+
+TILE = 1.0
+"""Side of the tiles by which edges are looked up [m]."""
+_TOUCH = 1e-9
+"""Beams this close (in beam spacings) to an edge's end still hit it, so that no beam slips between two edges."""
+
+
+class LidarSpec(NamedTuple):
+    """A planar lidar; the defaults are the TurtleBot3's LDS-01.
+
+    Attributes:
+        beams: How many, evenly over the full turn, the first one straight ahead, counter-clockwise.
+        max_range: Longest range measured; a beam that meets nothing reports exactly this [m].
+        noise: Standard deviation of a range [m].
+    """
+
+    beams: int = 360
+    max_range: float = 3.5
+    noise: float = 0.01
+
+
+class Scenery(NamedTuple):
+    """Floor plans laid out for the kernel; ``P`` plans, ``T`` tiles.
+
+    Attributes:
+        edges: (E, 4) x1, y1, x2, y2.
+        circles: (C, 3) x, y, radius.
+        first_tile: (P,) index of each plan's first tile.
+        tile_origin: (P, 2) lower-left corner of each plan's tiles [m].
+        tile_shape: (P, 2) rows, columns.
+        tile_start: (T + 1,) where each tile's items begin in ``items``.
+        items: Index of an edge, or E + index of a circle.
+    """
+
+    edges: NDArray[np.float64]
+    circles: NDArray[np.float64]
+    first_tile: NDArray[np.int64]
+    tile_origin: NDArray[np.float64]
+    tile_shape: NDArray[np.int64]
+    tile_start: NDArray[np.int64]
+    items: NDArray[np.int32]
+
+
+class Lidar:
+    """Casts the beams of many robots, each in one of several floor plans.
+
+    Args:
+        plans: The floor plans that worlds may refer to.
+        spec: Beams, range and noise.
+    """
+
+    def __init__(self, plans: Sequence[Floorplan], spec: LidarSpec | None = None) -> None:
+        self.spec = spec or LidarSpec()
+        self.scenery = _lay_out(plans, self.spec.max_range)
+        angles = np.arange(self.spec.beams) * (2 * np.pi / self.spec.beams)
+        self.directions = np.stack([np.cos(angles), np.sin(angles)])
+
+    def cast(self, poses: NDArray[np.float64], plan: NDArray[np.int64], radius: float = 0.0) -> NDArray[np.float64]:
+        """Exact ranges ``(worlds, robots, beams)`` [m], ``max_range`` where a beam meets nothing.
+
+        Args:
+            poses: ``(worlds, robots, 3)`` x, y, theta.
+            plan: ``(worlds,)`` index of each world's floor plan.
+            radius: Of the other robots, which beams meet too; 0 leaves them invisible [m].
+        """
+        worlds, robots = poses.shape[:2]
+        ranges = np.empty((worlds, robots, self.spec.beams))
+        cast_beams(0, worlds, poses, plan, radius, self.scenery, self.directions, self.spec.max_range, ranges)
+        return ranges
+
+
+@njit(cache=True, nogil=True)
+def cast_beams(
+    first: int,
+    last: int,
+    poses: NDArray[np.float64],
+    plan: NDArray[np.int64],
+    radius: float,
+    scenery: Scenery,
+    directions: NDArray[np.float64],
+    max_range: float,
+    ranges: NDArray[np.float64],
+) -> None:
+    """Fill ``ranges`` (worlds, robots, beams) of worlds first … last - 1; see ``Lidar.cast``."""
+    beams = directions.shape[1]
+    inverse = np.empty(beams)
+    for w in range(first, last):
+        for r in range(poses.shape[1]):
+            x, y, theta = poses[w, r, 0], poses[w, r, 1], poses[w, r, 2]
+            inverse[:] = 1.0 / max_range
+            _see_plan(x, y, theta, plan[w], scenery, max_range, directions, inverse)
+            if radius > 0.0:
+                for other in range(poses.shape[1]):
+                    if other != r:
+                        _see_circle(poses[w, other, 0] - x, poses[w, other, 1] - y, radius, theta, directions, inverse)
+            for k in range(beams):
+                ranges[w, r, k] = min(1.0 / inverse[k], max_range)
+
+
+@njit(cache=True, nogil=True)
+def _see_plan(
+    x: float,
+    y: float,
+    theta: float,
+    plan: int,
+    scenery: Scenery,
+    max_range: float,
+    directions: NDArray[np.float64],
+    inverse: NDArray[np.float64],
+) -> None:
+    """Raise ``inverse`` (beams,) to the inverse ranges of one plan's edges and circles near (x, y)."""
+    row = int(math.floor((y - scenery.tile_origin[plan, 1]) / TILE))
+    column = int(math.floor((x - scenery.tile_origin[plan, 0]) / TILE))
+    row = min(max(row, 0), scenery.tile_shape[plan, 0] - 1)
+    column = min(max(column, 0), scenery.tile_shape[plan, 1] - 1)
+    tile = scenery.first_tile[plan] + row * scenery.tile_shape[plan, 1] + column
+    count = scenery.edges.shape[0]
+    cos, sin = math.cos(theta), math.sin(theta)
+    for i in range(scenery.tile_start[tile], scenery.tile_start[tile + 1]):
+        item = scenery.items[i]
+        if item < count:
+            x1, y1, x2, y2 = scenery.edges[item]
+            # into the robot's frame, where beam k always points in direction k
+            ax, ay = (x1 - x) * cos + (y1 - y) * sin, (y1 - y) * cos - (x1 - x) * sin
+            bx, by = (x2 - x) * cos + (y2 - y) * sin, (y2 - y) * cos - (x2 - x) * sin
+            _see_edge(ax, ay, bx, by, max_range, directions, inverse)
+        else:
+            cx, cy, radius = scenery.circles[item - count]
+            _see_circle(cx - x, cy - y, radius, theta, directions, inverse)
+
+
+@njit(cache=True, nogil=True)
+def _see_edge(
+    ax: float,
+    ay: float,
+    bx: float,
+    by: float,
+    reach: float,
+    directions: NDArray[np.float64],
+    inverse: NDArray[np.float64],
+) -> None:
+    """Raise ``inverse`` along the beams that meet the front of the edge a → b, given in the robot's frame."""
+    cross = ax * by - ay * bx
+    if cross >= -1e-12:  # seen from behind, or edge-on
+        return
+    ex, ey = bx - ax, by - ay
+    if cross * cross > (ex * ex + ey * ey) * reach * reach:  # its whole line is out of range
+        return
+    beams = inverse.shape[0]
+    per_radian = beams / (2.0 * math.pi)
+    low = math.atan2(by, bx) * per_radian  # b is clockwise of a
+    high = math.atan2(ay, ax) * per_radian
+    if high < low:
+        high += beams
+    begin = int(math.ceil(low - _TOUCH))
+    end = int(math.floor(high + _TOUCH)) + 1
+    if begin < 0:
+        begin, end = begin + beams, end + beams
+    a, b = ey / cross, -ex / cross
+    _raise_run(begin, min(end, beams), a, b, directions, inverse)
+    if end > beams:
+        _raise_run(0, end - beams, a, b, directions, inverse)
+
+
+@njit(cache=True, nogil=True, fastmath={"nnan", "nsz"})
+def _raise_run(
+    begin: int, end: int, a: float, b: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
+) -> None:
+    """Raise ``inverse[begin:end]`` to ``a cos φ + b sin φ``."""
+    cos, sin = directions[0], directions[1]
+    for k in range(begin, end):
+        value = a * cos[k] + b * sin[k]
+        inverse[k] = value if value > inverse[k] else inverse[k]
+
+
+@njit(cache=True, nogil=True)
+def _see_circle(
+    dx: float, dy: float, radius: float, theta: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
+) -> None:
+    """Raise ``inverse`` along the beams that meet a circle whose centre is (dx, dy) from the robot."""
+    squared = dx * dx + dy * dy
+    if squared <= radius * radius:
+        return
+    beams = inverse.shape[0]
+    per_radian = beams / (2.0 * math.pi)
+    middle = (math.atan2(dy, dx) - theta) * per_radian
+    half = math.asin(radius / math.sqrt(squared)) * per_radian
+    cos, sin = math.cos(theta), math.sin(theta)
+    cx, cy = dx * cos + dy * sin, dy * cos - dx * sin
+    for n in range(int(math.ceil(middle - half)), int(math.floor(middle + half)) + 1):
+        k = n % beams
+        along = cx * directions[0, k] + cy * directions[1, k]
+        root = radius * radius - squared + along * along
+        if root >= 0.0 and along > 0.0:
+            inverse[k] = max(inverse[k], 1.0 / (along - math.sqrt(root)))
+
+
+@njit(cache=True, nogil=True)
+def add_range_noise(
+    first: int,
+    last: int,
+    noise: float,
+    max_range: float,
+    streams: NDArray[np.uint64],
+    ranges: NDArray[np.float64],
+    scans: NDArray[np.float32],
+) -> None:
+    """Fill ``scans`` (worlds, robots, beams) with noisy ranges; what exceeds ``max_range`` or met nothing reads ``max_range``.
+
+    Args:
+        first: First world.
+        last: World after the last.
+        noise: Standard deviation [m].
+        max_range: [m].
+        streams: (worlds, 4) random streams.
+        ranges: (worlds, robots, beams) exact ranges.
+        scans: (worlds, robots, beams) output.
+    """
+    for w in range(first, last):
+        for r in range(ranges.shape[1]):
+            for k in range(ranges.shape[2]):
+                value = ranges[w, r, k]
+                if value < max_range and noise > 0.0:
+                    value += noise * normal(streams[w])
+                scans[w, r, k] = min(max(value, 0.0), max_range)
+
+
+def _lay_out(plans: Sequence[Floorplan], max_range: float) -> Scenery:
+    edges = np.vstack([plan.edges for plan in plans])
+    circles = np.vstack([plan.circles for plan in plans])
+    starts, items, first_tile, origins, shapes = [np.zeros(1, np.int64)], [], [], [], []
+    tiles = edge_offset = circle_offset = 0
+    for plan in plans:
+        low = np.floor(np.array(plan.bounds[:2]) / TILE) * TILE
+        columns, rows = (np.ceil((np.array(plan.bounds[2:]) - low) / TILE)).astype(int)
+        found_edges = _tile_edges(plan.edges, low[0], low[1], int(rows), int(columns), max_range)
+        found_circles = _tile_circles(plan.circles, low, int(rows), int(columns), max_range)
+        tile = np.concatenate([found_edges[:, 0], found_circles[:, 0]])
+        item = np.concatenate([found_edges[:, 1] + edge_offset, found_circles[:, 1] + circle_offset + len(edges)])
+        order = np.argsort(tile, kind="stable")
+        items.append(item[order].astype(np.int32))
+        starts.append(np.cumsum(np.bincount(tile, minlength=int(rows * columns))) + starts[-1][-1])
+        first_tile.append(tiles)
+        origins.append(low)
+        shapes.append((int(rows), int(columns)))
+        tiles += int(rows * columns)
+        edge_offset += len(plan.edges)
+        circle_offset += len(plan.circles)
+    return Scenery(
+        edges,
+        circles,
+        np.array(first_tile, np.int64),
+        np.array(origins, np.float64),
+        np.array(shapes, np.int64),
+        np.concatenate(starts).astype(np.int64),
+        np.concatenate(items),
+    )
+
+
+@njit(cache=True, nogil=True)
+def _tile_edges(
+    edges: NDArray[np.float64], x0: float, y0: float, rows: int, columns: int, max_range: float
+) -> NDArray[np.int64]:
+    """Pairs (tile, edge) ``(n, 2)`` where some point of the tile faces the edge's front within range."""
+    pairs = [(0, 0) for _ in range(0)]
+    half = TILE / 2
+    reach = max_range + half * math.sqrt(2.0)
+    for k in range(edges.shape[0]):
+        x1, y1, x2, y2 = edges[k]
+        ex, ey = x2 - x1, y2 - y1
+        squared = max(ex * ex + ey * ey, 1e-300)
+        for row in range(rows):
+            cy = y0 + row * TILE + half
+            for column in range(columns):
+                cx = x0 + column * TILE + half
+                t = min(max(((cx - x1) * ex + (cy - y1) * ey) / squared, 0.0), 1.0)
+                if math.hypot(cx - x1 - t * ex, cy - y1 - t * ey) > reach:
+                    continue
+                side = ex * (cy - y1) - ey * (cx - x1)  # the front is where this is negative
+                if side - half * (abs(ex) + abs(ey)) < 0.0:
+                    pairs.append((row * columns + column, k))
+    found = np.empty((len(pairs), 2), dtype=np.int64)
+    for i in range(len(pairs)):
+        found[i, 0], found[i, 1] = pairs[i]
+    return found
+
+
+def _tile_circles(
+    circles: NDArray[np.float64], low: NDArray[np.float64], rows: int, columns: int, max_range: float
+) -> NDArray[np.int64]:
+    centre_x = low[0] + (np.arange(columns) + 0.5) * TILE
+    centre_y = low[1] + (np.arange(rows) + 0.5) * TILE
+    x, y = np.meshgrid(centre_x, centre_y)
+    pairs = [np.empty((0, 2), dtype=np.int64)]
+    for k, (cx, cy, radius) in enumerate(circles):
+        near = np.flatnonzero(np.hypot(x - cx, y - cy) <= max_range + radius + TILE * math.sqrt(0.5))
+        pairs.append(np.stack([near, np.full(len(near), k)], axis=1).astype(np.int64))
+    return np.concatenate(pairs)

@@ -1,0 +1,125 @@
+"""Floor plans from what users write in ``map=``: a name, a file, or a maze to be generated."""
+
+import os
+from functools import lru_cache
+from pathlib import Path
+from urllib.parse import parse_qsl
+
+from lidarena.world import builtin
+from lidarena.world.floorplan import Floorplan, Pose
+from lidarena.world.map_server import load_map, read_description
+from lidarena.world.maze import generate_maze
+from lidarena.world.movingai import movingai_floorplan
+from lidarena.world.refusals import MapError, suggest
+
+_MAZE_OPTIONS = {
+    "width": "width_m",
+    "height": "height_m",
+    "corridor": "corridor",
+    "loops": "loops",
+    "dead_ends": "dead_ends",
+    "thickness": "thickness",
+}
+_Stamp = tuple[tuple[int, int], ...]
+
+
+def names() -> list[str]:
+    """Names of the floor plans that come with the package."""
+    return builtin.names()
+
+
+def load_floorplan(spec: str | os.PathLike[str] | Floorplan, start: Pose | None = None) -> Floorplan:
+    """Load a floor plan; one that was loaded before is not read again unless its files have changed.
+
+    Args:
+        spec: A built-in name (see ``names``); the path of a ROS ``map_server`` ``.yaml``; the path of a MovingAI
+            ``.map``, if wanted with the side of a cell in metres as in ``"den520d.map?cell=0.5"``; or
+            ``"maze:SEED"``, if wanted with options as in
+            ``"maze:7?width=10&height=8&corridor=1.2&loops=0.2&dead_ends=0.5&thickness=0.1"`` (see ``generate_maze``).
+            A ``Floorplan`` is passed through.
+        start: Start pose x, y, theta instead of the plan's own [m, m, rad].
+
+    Raises:
+        MapError: The plan does not exist, its file is damaged, an option is out of range, nothing in it is free, or
+            the start stands in a wall.
+    """
+    plan = spec if isinstance(spec, Floorplan) else _load(_as_text(spec))
+    return plan if start is None else plan.with_start(start)
+
+
+def _as_text(spec: object) -> str:
+    text = os.fspath(spec) if isinstance(spec, str | os.PathLike) else None
+    if not isinstance(text, str) or not text or "\0" in text:
+        raise MapError(f"map {spec!r} is no name; a built-in name, a .yaml or .map file or 'maze:SEED' is needed")
+    return text
+
+
+def _load(spec: str) -> Floorplan:
+    if spec in builtin.names():
+        return _builtin(spec)
+    if spec.startswith("maze:"):
+        return _maze(spec)
+    path, _, options = spec.partition("?")
+    if path.endswith(".map"):
+        cell = _options(spec, options, ["cell"]).get("cell", 1.0)
+        return _movingai(path, cell, _stamp(path))
+    if spec.endswith((".yaml", ".yml")):
+        return _map_server(spec, _stamp(spec, os.fspath(read_description(spec).image)))
+    if spec.endswith((".pgm", ".png")):
+        raise MapError(f"map {spec!r} is a picture; give the .yaml file beside it, which says how large its cells are")
+    raise MapError(
+        f"map {spec!r} is not known{suggest(spec, [*names(), 'maze:SEED', 'a path to a .yaml or .map file'])}"
+    )
+
+
+@lru_cache(maxsize=32)
+def _builtin(name: str) -> Floorplan:
+    return builtin.builtin_floorplan(name)
+
+
+@lru_cache(maxsize=256)
+def _maze(spec: str) -> Floorplan:
+    seed, _, options = spec.removeprefix("maze:").partition("?")
+    if not (seed.isascii() and seed.isdecimal() and len(seed) < 20):
+        raise MapError(f"map {spec!r} has seed {seed!r}; a whole number is needed, as in 'maze:7'")
+    values = {_MAZE_OPTIONS[key]: value for key, value in _options(spec, options, list(_MAZE_OPTIONS)).items()}
+    return generate_maze(int(seed), **values, name=spec)
+
+
+@lru_cache(maxsize=32)
+def _map_server(path: str, stamp: _Stamp) -> Floorplan:
+    """Read a map; the stamp of its files is the cache's key."""
+    grid = load_map(path)
+    return Floorplan.from_grid(Path(path).stem, grid.solid, grid.resolution, grid.origin)
+
+
+@lru_cache(maxsize=32)
+def _movingai(path: str, cell: float, stamp: _Stamp) -> Floorplan:
+    return movingai_floorplan(path, cell)
+
+
+def _stamp(*paths: str) -> _Stamp:
+    """When files were written and how long they are; () for what is not there, which the reader then refuses."""
+    try:
+        return tuple((status.st_mtime_ns, status.st_size) for status in map(os.stat, paths))
+    except OSError:
+        return ()
+
+
+def _options(spec: str, text: str, allowed: list[str]) -> dict[str, float]:
+    """Numbers from ``key=value&key=value``."""
+    try:
+        pairs = parse_qsl(text, keep_blank_values=True, strict_parsing=bool(text))
+    except ValueError as error:
+        raise MapError(f"map {spec!r} has options {text!r}; they are written as in '?key=1.5&key=2'") from error
+    values: dict[str, float] = {}
+    for key, value in pairs:
+        if key not in allowed:
+            raise MapError(f"map {spec!r} has no option {key!r}{suggest(key, allowed)}")
+        if key in values:
+            raise MapError(f"map {spec!r} gives {key!r} twice; once is allowed")
+        try:
+            values[key] = float(value)
+        except ValueError as error:
+            raise MapError(f"map {spec!r} has {key} {value!r}; a number is needed") from error
+    return values

@@ -1,0 +1,113 @@
+"""Rigid-body motion: one pymunk space a world, disc robots with a differential drive among static walls."""
+
+import math
+from collections.abc import Sequence
+from typing import NamedTuple
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+
+from lidarena.world.floorplan import Floorplan, Pose
+
+
+class RobotSpec(NamedTuple):
+    """A disc robot; the defaults are the TurtleBot3 Burger's.
+
+    Attributes:
+        radius: Of the disc [m].
+        mass: [kg].
+        max_speed: Fastest forward speed that a command may ask for [m/s]; the paper drives at 0.5.
+        max_turn_rate: Fastest turn that a command may ask for [rad/s].
+        substep: Longest time step of the physics while the robot is near something [s].
+    """
+
+    radius: float = 0.105
+    mass: float = 1.0
+    max_speed: float = 0.5
+    max_turn_rate: float = 1.0
+    substep: float = 0.04
+
+
+class Physics:
+    """The pymunk spaces of a batch of worlds.
+
+    Args:
+        worlds: Number of worlds.
+        robots: Number of robots in each.
+        spec: The robots' body.
+
+    Attributes:
+        poses: ``(worlds, robots, 3)`` true poses, x, y, theta [m, m, rad].
+    """
+
+    def __init__(self, worlds: int, robots: int = 1, spec: RobotSpec | None = None) -> None:
+        self.spec = spec or RobotSpec()
+        self.poses = np.zeros((worlds, robots, 3))
+        self._plans: list[Floorplan | None] = [None] * worlds
+        self._spaces: list[pymunk.Space] = [pymunk.Space() for _ in range(worlds)]
+        self._bodies: list[list[pymunk.Body]] = [[] for _ in range(worlds)]
+
+    def place(self, world: int, plan: Floorplan, poses: Sequence[Pose]) -> None:
+        """Put one world's robots at rest at the given poses in a floor plan."""
+        if self._plans[world] is not plan:
+            self._plans[world] = plan
+            self._spaces[world] = _build_space(plan)
+        else:
+            for body in self._bodies[world]:
+                self._spaces[world].remove(body, *body.shapes)
+        self._bodies[world] = [self._add_robot(self._spaces[world], pose) for pose in poses]
+        self.poses[world] = poses
+
+    def advance(self, commands: NDArray[np.float64], duration: float, clearance: NDArray[np.float64]) -> None:
+        """Drive every robot for ``duration`` seconds and update ``poses``.
+
+        Each step moves a body along the chord of the arc that the wheels describe, so a step of any length ends where the
+        arc ends; a robot that can touch nothing meanwhile takes a single one.
+
+        Args:
+            commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
+            duration: [s].
+            clearance: ``(worlds, robots)`` distance from each robot's centre to the nearest surface [m].
+        """
+        reach = self.spec.radius + 1.5 * duration * np.abs(commands[:, :, 0]).max(axis=1) + 0.01
+        near = (clearance.min(axis=1) < reach).tolist()
+        fine = math.ceil(duration / self.spec.substep - 1e-9)
+        rows: list[list[list[float]]] = commands.tolist()
+        for world, space in enumerate(self._spaces):
+            self._advance_world(world, space, rows[world], duration, fine if near[world] else 1)
+
+    def _advance_world(
+        self, world: int, space: pymunk.Space, commands: list[list[float]], duration: float, steps: int
+    ) -> None:
+        dt = duration / steps
+        bodies = self._bodies[world]
+        for _ in range(steps):
+            for body, (speed, rate) in zip(bodies, commands, strict=True):
+                half = 0.5 * rate * dt
+                chord = speed * (math.sin(half) / half if half != 0.0 else 1.0)
+                heading = body.angle + half
+                body.velocity = (chord * math.cos(heading), chord * math.sin(heading))
+                body.angular_velocity = rate
+            space.step(dt)
+        for r, body in enumerate(bodies):
+            self.poses[world, r] = (*body.position, math.remainder(body.angle, 2.0 * math.pi))
+
+    def _add_robot(self, space: pymunk.Space, pose: Pose) -> pymunk.Body:
+        body = pymunk.Body(self.spec.mass, pymunk.moment_for_circle(self.spec.mass, 0.0, self.spec.radius))
+        body.position = (float(pose[0]), float(pose[1]))
+        body.angle = float(pose[2])
+        shape = pymunk.Circle(body, self.spec.radius)
+        shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
+        space.add(body, shape)
+        return body
+
+
+def _build_space(plan: Floorplan) -> pymunk.Space:
+    space = pymunk.Space()
+    walls: list[pymunk.Shape] = [
+        pymunk.Segment(space.static_body, (x1, y1), (x2, y2), 0.0) for x1, y1, x2, y2 in plan.edges.tolist()
+    ]
+    walls += [pymunk.Circle(space.static_body, radius, (x, y)) for x, y, radius in plan.circles.tolist()]
+    space.add(*walls)
+    return space

@@ -1,0 +1,104 @@
+"""Rasterised floor plans: which cells are solid, and how far each cell's centre is from the nearest surface."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+CLEARANCE_CAP = 1.0
+"""Clearances are exact up to here [m]; larger ones are reported as this."""
+
+
+class Raster(NamedTuple):
+    """A floor plan on a grid ``[row, column]``, row 0 at the smallest y.
+
+    Attributes:
+        solid: bool; the cell's centre lies in a solid part.
+        clearance: float32 [m]; distance of the cell's centre to the nearest surface, at most ``CLEARANCE_CAP``.
+        origin: (2,) [m]; lower-left corner of cell [0, 0].
+        resolution: Side of a cell [m].
+    """
+
+    solid: NDArray[np.bool_]
+    clearance: NDArray[np.float32]
+    origin: NDArray[np.float64]
+    resolution: float
+
+
+def rasterize(
+    edges: NDArray[np.float64],
+    circles: NDArray[np.float64],
+    origin: NDArray[np.float64],
+    resolution: float,
+    shape: tuple[int, int],
+    winding_outside: int = 0,
+) -> Raster:
+    """Rasterise oriented edges and circles.
+
+    Args:
+        edges: ``(E, 4)``, solid on the left.
+        circles: ``(C, 3)`` as x, y, radius.
+        origin: (2,) lower-left corner of cell [0, 0].
+        resolution: Side of a cell [m].
+        shape: (rows, columns).
+        winding_outside: Winding number of free space (see ``Floorplan``).
+    """
+    winding = np.zeros((shape[0], shape[1] + 1), dtype=np.int32)
+    clearance = np.full(shape, CLEARANCE_CAP, dtype=np.float32)
+    _count_crossings(edges, origin[0], origin[1], resolution, winding)
+    _edge_clearance(edges, origin[0], origin[1], resolution, clearance)
+    solid = np.cumsum(winding[:, :-1], axis=1) != winding_outside
+    x = origin[0] + (np.arange(shape[1]) + 0.5) * resolution
+    y = origin[1] + (np.arange(shape[0]) + 0.5) * resolution
+    for cx, cy, radius in circles:
+        gap = np.hypot(x[None, :] - cx, y[:, None] - cy) - radius
+        solid |= gap < 0
+        clearance = np.minimum(clearance, np.abs(gap)).astype(np.float32)
+    return Raster(solid, clearance, origin, resolution)
+
+
+@njit(cache=True, nogil=True)
+def _count_crossings(
+    edges: NDArray[np.float64], x0: float, y0: float, resolution: float, winding: NDArray[np.int32]
+) -> None:
+    """Add each edge's crossing of every row's centre line to ``winding`` (rows, columns + 1), to be summed along the row."""
+    rows, columns = winding.shape[0], winding.shape[1] - 1
+    for k in range(edges.shape[0]):
+        x1, y1, x2, y2 = edges[k]
+        if y1 == y2:
+            continue
+        sign = 1 if y2 < y1 else -1  # walking down has the solid part to the right: winding + 1 from there on
+        low, high = min(y1, y2), max(y1, y2)
+        first = max(0, int(math.ceil((low - y0) / resolution - 0.5)))
+        last = min(rows - 1, int(math.ceil((high - y0) / resolution - 0.5)) - 1)
+        for row in range(first, last + 1):
+            y = y0 + (row + 0.5) * resolution
+            x = x1 + (y - y1) / (y2 - y1) * (x2 - x1)
+            column = int(math.ceil((x - x0) / resolution - 0.5))
+            winding[row, min(max(column, 0), columns)] += sign
+
+
+@njit(cache=True, nogil=True)
+def _edge_clearance(
+    edges: NDArray[np.float64], x0: float, y0: float, resolution: float, clearance: NDArray[np.float32]
+) -> None:
+    """Lower ``clearance`` (rows, columns) to the distance of each cell's centre to the edges."""
+    rows, columns = clearance.shape
+    for k in range(edges.shape[0]):
+        x1, y1, x2, y2 = edges[k]
+        ex, ey = x2 - x1, y2 - y1
+        squared = max(ex * ex + ey * ey, 1e-300)
+        r0 = max(0, int((min(y1, y2) - CLEARANCE_CAP - y0) / resolution))
+        r1 = min(rows - 1, int((max(y1, y2) + CLEARANCE_CAP - y0) / resolution))
+        c0 = max(0, int((min(x1, x2) - CLEARANCE_CAP - x0) / resolution))
+        c1 = min(columns - 1, int((max(x1, x2) + CLEARANCE_CAP - x0) / resolution))
+        for row in range(r0, r1 + 1):
+            py = y0 + (row + 0.5) * resolution - y1
+            for column in range(c0, c1 + 1):
+                px = x0 + (column + 0.5) * resolution - x1
+                t = min(max((px * ex + py * ey) / squared, 0.0), 1.0)
+                away = math.hypot(px - t * ex, py - t * ey)
+                if away < clearance[row, column]:
+                    clearance[row, column] = away
