@@ -1,1 +1,55 @@
-"""TODO."""
+"""Learned agents: training with PPO, checkpoints, policy files.
+
+    from lidarena import agents
+
+    config = agents.load_config("configs/train/quick.yaml", agents.TrainingConfig, ["seed=1"])
+    folder = agents.train(config)
+    policy = agents.load(folder)
+
+PyTorch and Stable-Baselines3 are imported when one of these names is used for the first time.
+"""
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from lidarena.agents.interruption import TrainingStopped
+    from lidarena.agents.learned_policy import LearnedPolicy
+    from lidarena.agents.policy_file import load, save_policy
+    from lidarena.agents.training import train
+    from lidarena.agents.training_config import TrainingConfig
+    from lidarena.agents.yaml_config import ConfigModel, dump_config, load_config
+
+__all__ = [
+    "ConfigModel",
+    "LearnedPolicy",
+    "TrainingConfig",
+    "TrainingStopped",
+    "dump_config",
+    "load",
+    "load_config",
+    "save_policy",
+    "train",
+]
+
+_HOMES = {
+    "ConfigModel": "yaml_config",
+    "LearnedPolicy": "learned_policy",
+    "TrainingConfig": "training_config",
+    "TrainingStopped": "interruption",
+    "dump_config": "yaml_config",
+    "load": "policy_file",
+    "load_config": "yaml_config",
+    "save_policy": "policy_file",
+    "train": "training",
+}
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -1,4 +1,4 @@
-"""Trained policies on disk: weights as safetensors, the rest as JSON, and nothing that can run code when it is opened."""
+"""Trained policies on disk: weights as safetensors, the rest as JSON, nothing that can run code when it is opened."""
 
 import hashlib
 import importlib.metadata
@@ -205,7 +205,7 @@ def _check_spaces(policy: LearnedPolicy, env: Any, origin: str) -> None:
     """Refuse an environment that shows something else or takes other actions than the one trained in."""
     for what, trained in (("observation", policy.observation_space), ("action", policy.action_space)):
         name = f"{what}_space"
-        space: spaces.Space[Any] = getattr(env, f"single_{name}", None) or getattr(env, name)
+        space: spaces.Space[Any] = getattr(env, f"single_{name}" if hasattr(env, f"single_{name}") else name)
         if space != trained:
             raise PolicyFileError(
                 f"{origin!r} was trained in {policy.env_id!r} with {what}s {trained}, "

@@ -2,7 +2,7 @@
 
 import time
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Protocol, runtime_checkable
 
 import gymnasium as gym
 import numpy as np
@@ -17,6 +17,17 @@ from lidarena.world.refusals import ConfigError
 Arrays = dict[str, NDArray[Any]]
 
 _LOGGED = ("completeness", "collision")
+
+
+@runtime_checkable
+class Restorable(Protocol):
+    """A batch of worlds that can be written down in the middle of its episodes, random generators included."""
+
+    def get_state(self) -> Arrays:
+        """Everything that later steps depend on, as arrays without Python objects."""
+
+    def set_state(self, state: Arrays) -> None:
+        """Continue where `get_state` was called."""
 
 
 class BatchVecEnv(VecEnv):

@@ -48,7 +48,7 @@ class Episode:
         seed: Of the environment.
         measures: Values by `measures.MEASURES`' names, in SI units and fractions; NaN where the environment does not
             report what a measure needs.
-        ending: Why it ended: ``explored``, ``collision``, ``out of time`` or ``policy finished``.
+        ending: Why it ended: ``success``, ``collision``, ``out of time`` or ``policy finished``.
         progress: Time [s] and completeness after each step, shape (T + 1, 2).
         trace: For pictures, if it was asked for.
     """
@@ -120,7 +120,7 @@ def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:
     if info.get("collision", False):
         return "collision"
     if terminated:
-        return "explored"
+        return "success"
     return "out of time" if truncated else "policy finished"
 
 
@@ -149,7 +149,7 @@ class _Log:
         """Return every measure of the finished episode."""
         values = {
             "completeness": self.scalars["completeness"][-1],
-            "success": float(ending == "explored"),
+            "success": float(ending == "success"),
             "collision": float(ending == "collision"),
             "path_length": float(info.get("truth", {}).get("path_length", np.nan)),
             "time": self.scalars["time"][-1],

@@ -15,7 +15,13 @@ from typing import Any
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode
 from lidarena.evaluation.measures import BY_NAME, MEASURES, Measure
-from lidarena.evaluation.statistics import Interval, bootstrap, paired_difference, share_interval
+from lidarena.evaluation.statistics import (
+    Interval,
+    bootstrap,
+    paired_difference,
+    paired_share_difference,
+    share_interval,
+)
 from lidarena.world.refusals import ConfigError
 
 RESULTS_FILE = "results.json"
@@ -95,7 +101,8 @@ def level_with_best(rows: Sequence[Row], measure: Measure) -> list[Row]:
 
 def difference(row: Row, other: Row, measure: Measure) -> Interval:
     """Return the paired difference of two rows of one environment in a measure."""
-    return paired_difference(row.metrics[measure.name].values, other.metrics[measure.name].values)
+    paired = paired_share_difference if measure.share else paired_difference
+    return paired(row.metrics[measure.name].values, other.metrics[measure.name].values)
 
 
 def _is_level(difference: Interval) -> bool:

@@ -17,7 +17,8 @@ from lidarena.evaluation.statistics import Interval
 
 ABSENT = "–"
 NOTE = (
-    "Mean over episodes and its 95% interval (BCa bootstrap; Wilson's for shares). Policies met the same seeds. "
+    "Mean over episodes and its 95% interval (BCa bootstrap; Wilson's and Newcombe's for shares). Policies met the same "
+    "seeds. "
     "Bold: the best, and what cannot be told from it by paired differences. Path, time, D-optimality and pose error "
     "are compared only among policies that explored as much as the best; they count every episode, also those cut "
     "short by a collision."

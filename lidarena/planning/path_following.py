@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from lidarena.planning.steering import Commands, Surroundings, gap_at, loiter_gap, move, steer, tightest
 
 _SHORTEST_CARROT = 0.4  # the carrot lies at least so far ahead on the path, in sight or not (m)
+_SHORTEST_LOOK = 0.2  # nearer to the robot a path is not checked (m)
 
 
 @njit(cache=True, nogil=True)
@@ -33,6 +34,16 @@ def _in_sight(
         if gap_at(gap, closed, frame, start[0] + dx * i / steps, start[1] + dy * i / steps) < margin:
             return False
     return True
+
+
+@njit(cache=True, nogil=True)
+def _nearest_point(path: NDArray[np.float64], position: NDArray[np.float64]) -> int:
+    nearest, best = 0, np.inf
+    for i in range(path.shape[0]):
+        distance = math.hypot(path[i, 0] - position[0], path[i, 1] - position[1])
+        if distance <= best:
+            nearest, best = i, distance
+    return nearest
 
 
 @njit(cache=True, nogil=True)
@@ -59,11 +70,7 @@ def carrot(
     Returns:
         The farthest point in sight within ``lookahead``, at the least the one ``0.4`` m ahead.
     """
-    nearest, best = 0, np.inf
-    for i in range(path.shape[0]):
-        distance = math.hypot(path[i, 0] - position[0], path[i, 1] - position[1])
-        if distance <= best:
-            nearest, best = i, distance
+    nearest = _nearest_point(path, position)
     chosen, travelled = nearest, 0.0
     for i in range(nearest + 1, path.shape[0]):
         travelled += math.hypot(path[i, 0] - path[i - 1, 0], path[i, 1] - path[i - 1, 1])
@@ -96,6 +103,7 @@ class PathFollower:
     reach: float = 0.15
     end_reach: float = 0.25
     _queue: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64), repr=False)
+    _turning: int | None = field(default=None, repr=False)
 
     @property
     def planned(self) -> NDArray[np.int64]:
@@ -117,12 +125,16 @@ class PathFollower:
         Returns:
             Whether a sequence was found.
         """
-        for margin in (self.margin, 0.5 * (self.margin + self.least_margin), self.least_margin):
-            for lookahead in (self.lookahead, 2.0 * self.lookahead, 0.5 * self.lookahead):
-                sequence = self._towards(path, pose, around, margin, lookahead)
-                if len(sequence):
-                    self._queue = sequence
-                    return True
+        for margin, lookahead in (
+            (self.margin, self.lookahead),
+            (self.least_margin, self.lookahead),
+            (self.least_margin, 2.0 * self.lookahead),  # past a place too narrow to end in
+            (self.least_margin, 0.5 * self.lookahead),
+        ):
+            sequence = self._towards(path, pose, around, margin, lookahead)
+            if len(sequence):
+                self._queue = sequence
+                return True
         return False
 
     def _towards(
@@ -154,19 +166,47 @@ class PathFollower:
             return None
         command = int(self._queue[0])
         self._queue = self._queue[1:]
+        self._turning = None
         return command
 
     def loiter(self, pose: NDArray[np.float64], around: Surroundings) -> int:
-        """Return the turning command whose full circle keeps the most clearance; left where both keep ``margin``."""
+        """Return the turning command that keeps the robot safe where it is.
+
+        It is the one whose full circle keeps the most clearance, left where both keep ``margin``; once begun, it goes
+        on until its circle falls below ``least_margin``, for going left and right in turn would creep forwards.
+        """
         at = np.asarray(pose, np.float64)
         turns = [k for k, (_, w) in enumerate(self.commands.velocities) if w != 0.0]
-        turns.sort(key=lambda k: (-self.commands.velocities[k, 1], self.commands.velocities[k, 0]))
+        turns.sort(key=lambda k: -self.commands.velocities[k, 1])
 
         def room(k: int) -> float:
             here = loiter_gap(around.gap, around.closed, around.frame, at, self.commands.velocities[k])
             return min(float(here), self.margin)
 
-        return max(turns, key=room)  # the first of equals: the sharpest to the left
+        if self._turning is None or room(self._turning) < self.least_margin:
+            self._turning = max(turns, key=room)  # the first of equals: the sharpest to the left
+        return self._turning
+
+
+@njit(cache=True, nogil=True)
+def _is_blocked(
+    path: NDArray[np.float64],
+    position: NDArray[np.float64],
+    gap: NDArray[np.float32],
+    closed: NDArray[np.bool_],
+    frame: NDArray[np.float64],
+    margin: float,
+) -> bool:
+    nearest = _nearest_point(path, position)
+    width, height = gap.shape[1] * frame[2], gap.shape[0] * frame[2]
+    for i in range(nearest, path.shape[0]):
+        x, y = path[i, 0], path[i, 1]
+        inside = frame[0] <= x < frame[0] + width and frame[1] <= y < frame[1] + height
+        if not inside or math.hypot(x - position[0], y - position[1]) <= _SHORTEST_LOOK:
+            continue
+        if gap_at(gap, closed, frame, x, y) < margin:
+            return True
+    return False
 
 
 def blocked_ahead(path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings, margin: float) -> bool:
@@ -174,14 +214,13 @@ def blocked_ahead(path: NDArray[np.float64], pose: NDArray[np.float64], around: 
 
     Args:
         path: (n, 2) x, y (m), n >= 1.
-        pose: (3,) x, y, theta of the robot; the path is looked at from its nearest point on, less the first 0.2 m.
-        around: The robot's surroundings.
+        pose: (3,) x, y, theta of the robot; the path is looked at from its point nearest to the robot on, but not
+            within 0.2 m of the robot, which may have to leave a place that is too narrow.
+        around: The robot's surroundings; what of the path lies outside of them counts as free.
         margin: Least clearance (m).
     """
-    away = np.hypot(path[:, 0] - pose[0], path[:, 1] - pose[1])
-    rest = path[int(np.argmin(away)) :]
-    rest = rest[np.hypot(rest[:, 0] - pose[0], rest[:, 1] - pose[1]) > 0.2]
-    return any(gap_at(around.gap, around.closed, around.frame, x, y) < margin for x, y in rest)
+    at = np.asarray(pose, np.float64)
+    return bool(_is_blocked(path, at, around.gap, around.closed, around.frame, margin))
 
 
 def predict(pose: NDArray[np.float64], commands: Commands, sequence: NDArray[np.int64]) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ arc of 0.167 m, this is what forbids driving up to a wall: facing it at 0.28 m, 
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numba import njit
@@ -93,7 +94,7 @@ class Surroundings:
         points: NDArray[np.float64] = centres * self.resolution + np.asarray(self.origin)
         return points
 
-    @property
+    @cached_property
     def frame(self) -> NDArray[np.float64]:
         """The numbers that kernels need: x and y of the origin, side of a cell."""
         return np.array([self.origin[0], self.origin[1], self.resolution])
@@ -256,7 +257,7 @@ def _bin(pose: NDArray[np.float64], centre: NDArray[np.float64], side: int, head
     if row < 0 or row >= side or col < 0 or col >= side:
         return -1
     turn = int((pose[2] % _TWO_PI) / _TWO_PI * headings) % headings
-    return (row * side + col) * headings + turn
+    return int((row * side + col) * headings + turn)
 
 
 @njit(cache=True, nogil=True)

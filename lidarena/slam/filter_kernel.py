@@ -119,13 +119,9 @@ def update(
 ) -> None:
     """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample where N_eff is low."""
     beams = scan.shape[0]
-    points, normals = np.empty((beams, 2)), np.empty((beams, 2))
-    flat = np.empty(beams, np.bool_)
-    count = extract_points(scan, directions, max_range, points, normals, flat)
-    angles = np.empty(beams)
-    for i in range(count):
-        angles[i] = math.atan2(normals[i, 1], normals[i, 0])
-    chosen = _choose(flat, count, parameters.matcher.points)
+    points, flat = np.empty((beams, 5)), np.empty(beams, np.bool_)
+    count = extract_points(scan, directions, max_range, points, flat)
+    chosen = _choose(points, flat, count, parameters.matcher.points)
     local = np.empty((3, 3))
     covariance = state.motion_covariance[w].copy()
     for k in range(3):
@@ -137,13 +133,13 @@ def update(
         _rotate(local, prior[2], information)
         move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
         likelihood = match(
-            state.fields[w, i], maps.origin[w], resolution, chosen, points, normals, angles,
-            parameters.matcher, prior, information, state.particles[w, i], posterior,
+            state.fields[w, i], maps.origin[w], resolution, chosen, parameters.matcher,
+            prior, information, state.particles[w, i], posterior,
         )  # fmt: skip
         state.log_weights[w, i] += parameters.likelihood_gain * likelihood
         _draw(state.particles[w, i], posterior, stream)
         register_points(
-            state.fields[w, i], state.particles[w, i], maps.origin[w], resolution, count, points, angles, state.box[w]
+            state.fields[w, i], state.particles[w, i], maps.origin[w], resolution, count, points, state.box[w]
         )
         state.anchors[w, i] = state.particles[w, i]
     _normalise(w, state)
@@ -156,14 +152,12 @@ def update(
 
 
 @njit(cache=True, nogil=True)
-def _choose(flat: NDArray[np.bool_], count: int, most: int) -> NDArray[np.int64]:
-    """Indices of at most ``most`` points with a normal, evenly over the scan."""
+def _choose(points: NDArray[np.float64], flat: NDArray[np.bool_], count: int, most: int) -> NDArray[np.float64]:
+    """At most ``most`` points with a normal, evenly over the scan (n, 5)."""
     usable = np.flatnonzero(flat[:count])
-    if usable.shape[0] <= most:
-        return usable
-    chosen = np.empty(most, np.int64)
-    for i in range(most):
-        chosen[i] = usable[i * usable.shape[0] // most]
+    chosen = np.empty((min(most, usable.shape[0]), 5))
+    for i in range(chosen.shape[0]):
+        chosen[i] = points[usable[i * usable.shape[0] // chosen.shape[0]]]
     return chosen
 
 
@@ -316,11 +310,8 @@ def start_filter(
     r0, r1, c0, c1 = state.box[w]
     rows, columns = state.fields.shape[2:]
     beams = scan.shape[0]
-    points, normals = np.empty((beams, 2)), np.empty((beams, 2))
-    count = extract_points(scan, directions, max_range, points, normals, np.empty(beams, np.bool_))
-    angles = np.empty(beams)
-    for i in range(count):
-        angles[i] = math.atan2(normals[i, 1], normals[i, 0])
+    points = np.empty((beams, 5))
+    count = extract_points(scan, directions, max_range, points, np.empty(beams, np.bool_))
     state.box[w, 0], state.box[w, 1], state.box[w, 2], state.box[w, 3] = rows, 0, columns, 0
     for i in range(parameters.particles):
         if r1 > r0:
@@ -328,7 +319,7 @@ def start_filter(
         state.particles[w, i] = pose
         state.anchors[w, i] = pose
         state.ancestors[w, i] = i
-        register_points(state.fields[w, i], pose, maps.origin[w], resolution, count, points, angles, state.box[w])
+        register_points(state.fields[w, i], pose, maps.origin[w], resolution, count, points, state.box[w])
     state.log_weights[w] = 0.0
     state.motion[w] = 0.0
     state.motion_covariance[w] = 0.0

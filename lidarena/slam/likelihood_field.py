@@ -17,47 +17,31 @@ FULL = 4095
 """The field's value on a wall."""
 SECTORS = 16
 """Directions that a wall may face."""
+ROUND_UP = 10.0 * SECTORS + 0.5
+"""Added to a direction in sectors so that cutting off its fraction rounds it; whole turns do not count."""
 _REACH = 4
 """Cells from an end point up to which it is stamped; 0.2 m is 2.5 σ."""
-_FRESH = 0.88
-"""A point is stamped where the field is lower: no wall is known within about 4 cm."""
+_FRESH = 0.75
+"""A point is stamped where the field is lower: no wall is known within about 6 cm."""
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def sector_of(angle: float) -> int:
-    """Sector 0 … 15 of a direction [rad]."""
-    return int(math.floor(angle * (SECTORS / (2.0 * math.pi)) + 0.5)) & (SECTORS - 1)
+def facing(cell: int, sector: int) -> float:
+    """The cell's value if its wall faces within about 100° of ``sector`` (≥ 0, taken modulo 16), else 0."""
+    return np.float64(cell >> 4 if ((cell + 4 - sector) & 15) <= 8 else 0)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def _facing(cell: int, sector: int) -> int:
-    """The cell's value if its wall faces within about 100° of ``sector``, else 0."""
-    apart = ((cell & 15) - sector) & 15
-    return cell >> 4 if apart <= 4 or apart >= 12 else 0
-
-
-@njit(cache=True, nogil=True, forceinline=True)
-def sample(field: NDArray[np.uint16], u: float, v: float, sector: int) -> tuple[float, float, float]:
-    """Field and its gradient (per cell along columns, along rows) at column ``u``, row ``v`` (cell centres at integers).
-
-    Args:
-        field: (rows, columns).
-        u: Column, fractional.
-        v: Row, fractional.
-        sector: Direction that the point's own wall faces.
-    """
-    column, row = int(math.floor(u)), int(math.floor(v))
-    if column < 0 or row < 0 or column >= field.shape[1] - 1 or row >= field.shape[0] - 1:
-        return 0.0, 0.0, 0.0
+@njit(cache=True, nogil=True)
+def field_at(field: NDArray[np.uint16], u: float, v: float, sector: int) -> float:
+    """Field (rows, columns) at column ``u``, row ``v`` (cell centres at integers) of walls that face ``sector``."""
+    if not (u >= 0.0 and v >= 0.0 and u < field.shape[1] - 2.0 and v < field.shape[0] - 2.0):
+        return 0.0
+    column, row = np.int64(u), np.int64(v)
     a, b = u - column, v - row
-    f00 = _facing(np.int64(field[row, column]), sector)
-    f01 = _facing(np.int64(field[row, column + 1]), sector)
-    f10 = _facing(np.int64(field[row + 1, column]), sector)
-    f11 = _facing(np.int64(field[row + 1, column + 1]), sector)
+    f00, f01 = facing(np.int64(field[row, column]), sector), facing(np.int64(field[row, column + 1]), sector)
+    f10, f11 = facing(np.int64(field[row + 1, column]), sector), facing(np.int64(field[row + 1, column + 1]), sector)
     low, high = f00 + a * (f01 - f00), f10 + a * (f11 - f10)
-    scale = 1.0 / FULL
-    along = (1.0 - b) * (f01 - f00) + b * (f11 - f10)
-    return (low + b * (high - low)) * scale, along * scale, (high - low) * scale
+    return (low + b * (high - low)) / FULL
 
 
 @njit(cache=True, nogil=True)
@@ -68,7 +52,6 @@ def register_points(
     resolution: float,
     count: int,
     points: NDArray[np.float64],
-    angles: NDArray[np.float64],
     box: NDArray[np.int64],
 ) -> None:
     """Stamp a scan's points, seen from a pose, into a field where it does not know them yet.
@@ -79,19 +62,18 @@ def register_points(
         origin: (2,) lower-left corner of the field [m].
         resolution: [m].
         count: Number of points.
-        points: (≥ count, 2) in the sensor's frame.
-        angles: (≥ count,) direction of the normals in the sensor's frame [rad].
+        points: (≥ count, 5) as ``scan_points.extract_points`` gives them.
         box: (4,) first row, last row + 1, first column, last column + 1 that hold anything; grown.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
     for i in range(count):
         x = pose[0] + cos * points[i, 0] - sin * points[i, 1]
         y = pose[1] + sin * points[i, 0] + cos * points[i, 1]
         u, v = (x - origin[0]) / resolution - 0.5, (y - origin[1]) / resolution - 0.5
-        sector = sector_of(angles[i] + pose[2])
-        value, _, _ = sample(field, u, v, sector)
-        if value < _FRESH:
-            _stamp(field, u, v, sector, resolution, box)
+        sector = np.int64(turn + points[i, 4])
+        if field_at(field, u, v, sector) < _FRESH:
+            _stamp(field, u, v, sector & (SECTORS - 1), resolution, box)
 
 
 @njit(cache=True, nogil=True)

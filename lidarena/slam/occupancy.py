@@ -13,14 +13,15 @@ from numpy.typing import NDArray
 
 OCCUPIED_SHARE = 0.25
 """A cell is occupied where more than this share of the beams that reached it ended there (gmapping's threshold)."""
-_ONE = 65536  # fixed-point unit of the ray's steps
+_ONE = 1 << 16  # fixed-point unit of the ray's steps
+_HIT = 1 << 32  # one beam that ended in a cell
 
 
 class OccupancyMaps(NamedTuple):
     """Occupancy grids of a batch, ``(worlds, rows, columns)``, row 0 at the smallest y.
 
     Attributes:
-        counts: (worlds, rows, columns, 2) int32: beams that ended in a cell, beams that reached it.
+        counts: (worlds, rows, columns) int64: beams that ended in a cell × 2³² + beams that reached it.
         occupancy: int8: -1 unknown, 0 free, 100 occupied.
         wanted: (plans, rows, columns) uint8: 1 where a known cell counts as covered, else 0.
         plan: (worlds,) which of ``wanted`` a world uses.
@@ -28,7 +29,7 @@ class OccupancyMaps(NamedTuple):
         origin: (worlds, 2) lower-left corner of each grid [m].
     """
 
-    counts: NDArray[np.int32]
+    counts: NDArray[np.int64]
     occupancy: NDArray[np.int8]
     wanted: NDArray[np.uint8]
     plan: NDArray[np.int64]
@@ -40,7 +41,7 @@ def empty_maps(worlds: int, wanted: NDArray[np.uint8]) -> OccupancyMaps:
     """Unknown maps for ``worlds`` worlds, as large as ``wanted`` (plans, rows, columns)."""
     rows, columns = wanted.shape[1:]
     return OccupancyMaps(
-        np.zeros((worlds, rows, columns, 2), np.int32),
+        np.zeros((worlds, rows, columns), np.int64),
         np.full((worlds, rows, columns), -1, np.int8),
         wanted,
         np.zeros(worlds, np.int64),
@@ -94,35 +95,33 @@ def trace_scan(
         reach = min(scan[k], max_range) / resolution
         du = reach * (directions[0, k] * cos - directions[1, k] * sin)
         dv = reach * (directions[0, k] * sin + directions[1, k] * cos)
-        end_c, end_r = int(math.floor(start_u + du)), int(math.floor(start_v + dv))
         steps = int(max(abs(du), abs(dv))) + 1
         u, v = int(start_u * _ONE), int(start_v * _ONE)
         step_u, step_v = int(du / steps * _ONE), int(dv / steps * _ONE)
+        end_c, end_r = (u + steps * step_u) >> 16, (v + steps * step_v) >> 16
         for _ in range(steps):
             c, r = u >> 16, v >> 16
-            if (c != end_c or r != end_r) and 0 <= c < columns and 0 <= r < rows:
-                change += _count(counts, occupancy, wanted, r, c, 0, sign)
             u, v = u + step_u, v + step_v
+            if not (0 <= c < columns and 0 <= r < rows) or (c == end_c and r == end_r):
+                continue
+            counts[np.uint64(r), np.uint64(c)] += sign
+            if sign < 0 or occupancy[np.uint64(r), np.uint64(c)] != 0:  # one more passing beam leaves a free cell free
+                change += _reassess(counts, occupancy, wanted, r, c)
         if 0 <= end_c < columns and 0 <= end_r < rows:
-            change += _count(counts, occupancy, wanted, end_r, end_c, 1 if scan[k] < max_range else 0, sign)
+            counts[end_r, end_c] += sign * (1 + (_HIT if scan[k] < max_range else 0))
+            change += _reassess(counts, occupancy, wanted, end_r, end_c)
     maps.covered[world] += change
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def _count(
-    counts: NDArray[np.int32],
-    occupancy: NDArray[np.int8],
-    wanted: NDArray[np.uint8],
-    r: int,
-    c: int,
-    hit: int,
-    sign: int,
+@njit(cache=True, nogil=True)
+def _reassess(
+    counts: NDArray[np.int64], occupancy: NDArray[np.int8], wanted: NDArray[np.uint8], r: int, c: int
 ) -> int:
-    """Count one beam in a cell and return the change in covered cells."""
-    hits, visits = counts[r, c, 0] + sign * hit, counts[r, c, 1] + sign
-    counts[r, c, 0], counts[r, c, 1] = hits, visits
-    if visits <= 0:
+    """Set a cell's occupancy from its counts and return the change in covered cells."""
+    hits, visits = counts[r, c] >> 32, counts[r, c] & (_HIT - 1)
+    was_known = occupancy[r, c] >= 0
+    if visits == 0:
         occupancy[r, c] = -1
-        return -np.int64(wanted[r, c])
+        return -np.int64(wanted[r, c]) if was_known else 0
     occupancy[r, c] = 100 if hits > OCCUPIED_SHARE * visits else 0
-    return np.int64(wanted[r, c]) if visits == 1 and sign > 0 else 0
+    return 0 if was_known else np.int64(wanted[r, c])

@@ -6,6 +6,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.slam.likelihood_field import SECTORS
+
 SPACING = 0.04
 """Beams are averaged over this length of wall [m]; a cell is 0.05 m, more points would say nothing new."""
 JUMP = 0.2
@@ -22,7 +24,6 @@ def extract_points(
     directions: NDArray[np.float64],
     max_range: float,
     points: NDArray[np.float64],
-    normals: NDArray[np.float64],
     flat: NDArray[np.bool_],
 ) -> int:
     """Average a scan's hits into points and fit normals; returns how many points there are.
@@ -31,14 +32,15 @@ def extract_points(
         scan: (beams,) ranges [m]; ``max_range`` and above means no return.
         directions: (2, beams) cos and sin of the beams' angles.
         max_range: [m].
-        points: (beams, 2) output, in the sensor's frame.
-        normals: (beams, 2) output, unit, towards the sensor; where ``flat`` is False it only points back along the beam.
+        points: (beams, 5) output in the sensor's frame: x, y [m], unit normal towards the sensor (where ``flat`` is False it only
+            points back along the beam), and the normal's direction in sectors (``likelihood_field.SECTORS`` to the turn).
         flat: (beams,) output, whether the normal was fitted.
     """
     surface = np.empty(scan.shape[0], np.int64)
     count = _average_hits(scan, directions, max_range, points, surface)
     for i in range(count):
-        flat[i] = _fit_normal(i, count, points, surface, normals)
+        flat[i] = _fit_normal(i, count, points, surface)
+        points[i, 4] = math.atan2(points[i, 3], points[i, 2]) * (SECTORS / (2.0 * math.pi))
     return count
 
 
@@ -56,8 +58,8 @@ def _average_hits(
     for k in range(scan.shape[0]):
         hit = scan[k] < max_range and scan[k] > 0.0
         x, y = scan[k] * directions[0, k], scan[k] * directions[1, k]
-        jump = members > 0 and math.hypot(x - last_x, y - last_y) > JUMP
-        full = members > 0 and math.hypot(x - first_x, y - first_y) >= SPACING
+        jump = members > 0 and (x - last_x) ** 2 + (y - last_y) ** 2 > JUMP * JUMP
+        full = members > 0 and (x - first_x) ** 2 + (y - first_y) ** 2 >= SPACING * SPACING
         if members > 0 and (jump or full or not hit):
             points[count, 0], points[count, 1] = sum_x / members, sum_y / members
             surface[count] = number
@@ -78,13 +80,11 @@ def _average_hits(
 
 
 @njit(cache=True, nogil=True)
-def _fit_normal(
-    i: int, count: int, points: NDArray[np.float64], surface: NDArray[np.int64], normals: NDArray[np.float64]
-) -> bool:
+def _fit_normal(i: int, count: int, points: NDArray[np.float64], surface: NDArray[np.int64]) -> bool:
     """Fit a line to the neighbours of point ``i`` on its surface; returns False where they are too few or bent."""
-    px, py = points[i]
-    away = max(math.hypot(px, py), 1e-9)
-    normals[i, 0], normals[i, 1] = -px / away, -py / away
+    px, py = points[i, 0], points[i, 1]
+    away = max(math.sqrt(px * px + py * py), 1e-9)
+    points[i, 2], points[i, 3] = -px / away, -py / away
     n, sx, sy, sxx, sxy, syy = 0, 0.0, 0.0, 0.0, 0.0, 0.0
     for step in (-1, 1):
         j = i if step == -1 else i + 1
@@ -103,9 +103,12 @@ def _fit_normal(
     root = math.sqrt(half * half + sxy * sxy)
     if mean - root > FLATNESS * (mean + root):
         return False
-    angle = 0.5 * math.atan2(sxy, half) + 0.5 * math.pi  # across the longest axis
-    nx, ny = math.cos(angle), math.sin(angle)
+    # the eigenvector of the smaller eigenvalue, from whichever row of the matrix determines it better
+    nx, ny = (sxy, -half - root) if half > 0.0 else (half - root, sxy)
+    length = math.sqrt(nx * nx + ny * ny)
+    if length == 0.0:
+        return False
     if nx * px + ny * py > 0.0:
-        nx, ny = -nx, -ny
-    normals[i, 0], normals[i, 1] = nx, ny
+        length = -length
+    points[i, 2], points[i, 3] = nx / length, ny / length
     return True

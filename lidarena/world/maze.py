@@ -140,7 +140,13 @@ def _spanning_tree(rows: int, columns: int, rng: np.random.Generator) -> Lattice
 def _open_loops(walls: LatticeWalls, fraction: float, rng: np.random.Generator) -> None:
     rows, columns = walls.vertical.shape[0], walls.horizontal.shape[1]
     cells = [(row, column) for row in range(rows) for column in range(columns)]
-    inner = [(cell, s) for cell in cells for s in _inner_steps(walls, cell) if s > (0, 0) and _is_wall(walls, cell, s)]
+    forward = _NEIGHBOURS[:2]  # east and north only, so that each inner wall is met once
+    inner = [
+        (cell, step)
+        for cell in cells
+        for step in _inner_steps(walls, cell)
+        if step in forward and _is_wall(walls, cell, step)
+    ]
     for index in rng.permutation(len(inner))[: round(fraction * len(inner))]:
         _open(walls, *inner[int(index)])
 

@@ -37,7 +37,10 @@ def read_picture(path: Path, where: str, resolution: float) -> tuple[NDArray[np.
     picture = f"the picture {str(path)!r} of {where}"
     width, height = _checked_size(data, picture)
     check_extent(where, height, width, resolution)
-    pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_UNCHANGED)
+    try:
+        pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_UNCHANGED)
+    except cv2.error:
+        pixels = None
     if pixels is None or pixels.shape[:2] != (height, width):
         raise MapError(f"{picture} is damaged; a whole PGM or PNG file is needed")
     return _grey(pixels)

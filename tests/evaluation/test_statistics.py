@@ -13,6 +13,7 @@ from lidarena.evaluation.statistics import (
     interquartile_mean,
     mean,
     paired_difference,
+    paired_share_difference,
     share_interval,
 )
 
@@ -110,3 +111,28 @@ def test_means() -> None:
     assert np.isnan(geometric_mean([-1.0, 1.0]))
     np.testing.assert_allclose(interquartile_mean(sample), [55.0, 1.0])
     assert interquartile_mean(np.arange(11.0) ** 2) == pytest.approx(stats.trim_mean(np.arange(11.0) ** 2, 0.25))
+
+
+def test_paired_share_difference_covers_the_truth() -> None:
+    rng = np.random.default_rng(5)
+    inside = 0
+    for _ in range(1000):
+        luck = rng.random(25)  # shared by both, so that the outcomes are correlated
+        first, second = (luck + 0.3 * rng.random(25) < share for share in (0.9, 0.7))
+        interval = paired_share_difference(first, second)
+        inside += interval.low <= 0.2 <= interval.high
+    assert 0.93 <= inside / 1000 <= 0.995
+
+
+@given(st.lists(st.tuples(st.booleans(), st.booleans()), min_size=1, max_size=30))
+def test_paired_share_difference_lies_in_its_interval_and_changes_sign_with_the_order(pairs: list[tuple]) -> None:
+    first, second = np.array(pairs, dtype=float).T
+    there, back = paired_share_difference(first, second), paired_share_difference(second, first)
+    assert -1 - 1e-9 <= there.low <= there.mean <= there.high <= 1 + 1e-9
+    assert there.low < there.high
+    np.testing.assert_allclose(there, (-back.mean, -back.high, -back.low), atol=1e-12)
+
+
+def test_paired_share_difference_of_few_episodes_is_uncertain() -> None:
+    assert paired_share_difference([1.0, 1.0], [0.0, 0.0]).low < 0.1
+    assert paired_share_difference(np.ones(20), np.zeros(20)).low > 0.6

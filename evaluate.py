@@ -1,0 +1,65 @@
+"""Compare policies from a YAML file: tables with 95% intervals, pictures, and videos if asked for.
+
+python evaluate.py --config configs/compare/exploration.yaml --set episodes=50 --out results/mine
+"""
+
+import argparse
+import json
+import sys
+
+from rich.console import Console
+
+from lidarena.agents.yaml_config import load_config
+from lidarena.evaluation import Comparison, ComparisonConfig, EpisodeError, compare
+from lidarena.evaluation.tables import NOTE, terminal_table
+from lidarena.world.refusals import Refusal
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a comparison; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
+    options = _parser().parse_args(arguments)
+    overrides = [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
+    out, err = Console(), Console(stderr=True)
+    try:
+        comparison = compare(load_config(options.config, ComparisonConfig, overrides), err)
+    except Refusal as refusal:
+        print(refusal, file=sys.stderr)
+        return 2
+    except (EpisodeError, OSError) as error:
+        print(error, getattr(error, "report", ""), sep="\n", end="", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        print("interrupted; no results were written", file=sys.stderr)
+        return 130
+    out.print(terminal_table(comparison.rows, out.width))
+    out.print(NOTE, style="dim", highlight=False)
+    for line in _places(comparison):
+        out.print(line, highlight=False, markup=False, soft_wrap=True)
+    return 0
+
+
+def _places(comparison: Comparison) -> list[str]:
+    """Where everything is, a line each."""
+    lines = [f"tables:   {comparison.folder}/table.md (also .csv, .tex and results.json)"]
+    for kind, files in (("pictures", comparison.pictures), ("videos", comparison.videos)):
+        if files:
+            first = next((file for file in files if file.stem == "overview"), files[0])
+            others = f" and {len(files) - 1} more beside it" if files[1:] else ""
+            lines.append(f"{kind + ':':9} {first}{others}")
+    if comparison.earlier is not None:
+        lines.append(f"earlier:  the results that stood there are now in {comparison.earlier}")
+    return lines
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description="Compare policies from a YAML file.")
+    config_help = "comparison file, such as configs/compare/quick.yaml"
+    parser.add_argument("--config", required=True, metavar="FILE", help=config_help)
+    set_help = "override keys of the file, such as episodes=50"
+    parser.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", help=set_help)
+    parser.add_argument("--out", metavar="DIR", help="folder of the results; over the file's own 'out'")
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,101 @@
+"""Run folders: which one a training gets, and whether an old one can go on."""
+
+from pathlib import Path
+from typing import Any
+
+from lidarena.agents import checkpoint
+from lidarena.agents.training_config import TrainingConfig
+from lidarena.agents.yaml_config import load_config
+from lidarena.world.refusals import ConfigError
+
+CONFIG_FILE = "config.yaml"
+
+_MAY_CHANGE = ("total_steps", "checkpoint_every", "torch_threads", "out")
+"""Keys that may differ when a training goes on, since no step taken so far depends on them."""
+
+
+def claim(out: str | Path, exact: bool = False) -> Path:
+    """Make the folder of a new training; nothing that lies in another one is touched.
+
+    Args:
+        out: The wish.
+        exact: Whether a folder that already holds something is refused; else ``NAME-2``, ``NAME-3``, … is taken.
+
+    Returns:
+        A folder that exists and is empty.
+
+    Raises:
+        ConfigError: The folder is taken or cannot be made.
+    """
+    wish = Path(out)
+    candidate = wish
+    number = 1
+    try:
+        while not _take(candidate):
+            if exact:
+                raise ConfigError(
+                    f"the folder {str(wish)!r} already holds files; choose another one, or go on with --resume {wish}"
+                )
+            number += 1
+            candidate = wish.with_name(f"{wish.name}-{number}")
+    except OSError as error:
+        raise ConfigError(f"cannot make the run folder {str(candidate)!r}: {error.strerror}") from None
+    return candidate
+
+
+def config_of(folder: str | Path) -> TrainingConfig:
+    """Read the configuration of a run folder.
+
+    Raises:
+        ConfigError: The folder does not exist or is no run folder.
+    """
+    path = Path(folder)
+    if not path.is_dir():
+        raise ConfigError(f"there is no run folder {str(path)!r} to go on with")
+    if not (path / CONFIG_FILE).exists():
+        raise ConfigError(f"the folder {str(path)!r} lacks {CONFIG_FILE}, so it is no run folder")
+    return load_config(path / CONFIG_FILE, TrainingConfig)
+
+
+def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path:
+    """Find the checkpoint from which a training goes on.
+
+    Args:
+        folder: Of the run.
+        config: With which it is to go on.
+
+    Raises:
+        ConfigError: The folder is no run folder, was made with another configuration, or has no checkpoint.
+    """
+    old = _flat(config_of(folder).model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
+    new = _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
+    for key in sorted(old.keys() | new.keys()):
+        if old.get(key) != new.get(key):
+            raise ConfigError(
+                f"the run {str(folder)!r} was trained with {key} = {old.get(key)!r}, so it cannot go on with "
+                f"{new.get(key)!r}; only {', '.join(_MAY_CHANGE)} may change"
+            )
+    found = checkpoint.newest(Path(folder))
+    if found is None:
+        raise ConfigError(f"the run {str(folder)!r} has no checkpoint to go on from")
+    return found
+
+
+def _take(folder: Path) -> bool:
+    """Make a folder, or take one that is there and empty."""
+    try:
+        folder.mkdir(parents=True)
+    except FileExistsError:
+        return folder.is_dir() and not any(folder.iterdir())
+    return True
+
+
+def _flat(content: dict[str, Any], prefix: str = "") -> dict[str, Any]:
+    """Keys as ``--set`` spells them."""
+    flat: dict[str, Any] = {}
+    for key, value in content.items():
+        if isinstance(value, dict) and value:
+            flat |= _flat(value, f"{prefix}{key}.")
+        else:
+            flat[f"{prefix}{key}"] = value
+    return flat

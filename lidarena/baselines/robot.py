@@ -1,0 +1,95 @@
+"""The exploration robot as a baseline sees it: its commands, its beams and the action space they stand for."""
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.planning.steering import Commands
+from lidarena.world.refusals import ConfigError
+
+FULL_SPEED, TURN_SPEED, TURN_RATE = 0.5, 0.05, 0.3
+"""DA-SLAM's actions: forward at 0.5 m/s; left and right at 0.05 m/s and 0.3 rad/s."""
+LEFT = (TURN_SPEED, TURN_RATE)
+_STEERED = [(FULL_SPEED, 0.0), (0.0, 1.0), (0.0, -1.0), (FULL_SPEED, 0.5), (FULL_SPEED, -0.5)]
+_BEAM_ANGLES = np.radians([0.0, 45.0, 90.0, -45.0, -90.0])
+_MAX_RANGE = 3.5
+_TOUCH = 0.12  # a beam shorter than this ends the episode (m)
+_BEAM_SLACK = 0.03  # three sigma of the lidar (m)
+
+
+class Robot:
+    """Translates between an environment's actions and observations and what planning works with.
+
+    Attributes:
+        commands: What the robot can do. With discrete actions these are the three actions in their order, otherwise
+            forward, turning on the spot and wide arcs.
+        period: Seconds between two actions.
+    """
+
+    def __init__(self, env: Any) -> None:
+        """Read the action space and the decision period of an exploration environment.
+
+        Raises:
+            ConfigError: if its actions are neither ``Discrete(3)`` nor a box of two numbers.
+        """
+        space = getattr(env, "single_action_space", env.action_space)
+        self.period = _decision_period(env)
+        self._discrete = isinstance(space, gym.spaces.Discrete)
+        if isinstance(space, gym.spaces.Discrete) and space.n == 3:
+            rows = [(FULL_SPEED, 0.0), LEFT, (TURN_SPEED, -TURN_RATE)]
+        elif isinstance(space, gym.spaces.Box) and space.shape == (2,):
+            rows = _STEERED
+        else:
+            raise ConfigError(f"an action space {space}, allowed are Discrete(3) and a Box of shape (2,)")
+        self.commands = Commands.of(rows, self.period)
+
+    def action(self, command: int) -> Any:
+        """Return the environment's action for a command."""
+        return command if self._discrete else self._box(*self.commands.velocities[command])
+
+    def keep_turning(self) -> Any:
+        """Return the environment's action for DA-SLAM's left turn."""
+        return 1 if self._discrete else self._box(*LEFT)
+
+    @staticmethod
+    def _box(v: float, w: float) -> NDArray[np.float32]:
+        # the environment's mapping: v = 0.25 (a0 + 1) m/s, w = a1 rad/s
+        return np.array([v / (0.5 * FULL_SPEED) - 1.0, w], dtype=np.float32)
+
+    def would_touch(self, command: int, observation: Any) -> bool:
+        """Return whether the beams that were observed say that a command ends in a collision.
+
+        A command that takes the robot away from what a beam has hit is never held against that beam.
+        """
+        points = _hits(observation)
+        if not len(points):
+            return False
+        before = np.hypot(points[:, 0], points[:, 1])
+        after = np.hypot(*(points - self.commands.moves[command, :2]).T)
+        return bool(np.any((after < _TOUCH + _BEAM_SLACK) & (after < before)))
+
+
+def _decision_period(env: Any) -> float:
+    inner = getattr(env, "unwrapped", env)
+    period = getattr(inner, "decision_period", None)
+    if period is None:
+        spec = getattr(env, "spec", None)
+        period = spec.kwargs.get("decision_period", 0.2) if spec is not None else 0.2
+    return float(period)
+
+
+def _hits(observation: Any) -> NDArray[np.float64]:
+    """What the beams hit, (n, 2) x, y in the robot's frame; beams without an echo are left out."""
+    if isinstance(observation, Mapping):
+        scan = np.asarray(observation["scan"], np.float64)
+        angles = np.arange(len(scan)) * (2.0 * math.pi / len(scan))
+    else:
+        scan, angles = np.asarray(observation, np.float64)[:5], _BEAM_ANGLES
+    ranges = scan * _MAX_RANGE
+    hit = (scan > 0.0) & (scan < 1.0)
+    points: NDArray[np.float64] = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1)[hit]
+    return points

@@ -1,0 +1,99 @@
+"""A whole comparison: from its file to the folder with tables, pictures and videos."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from rich.console import Console
+
+from lidarena.evaluation.comparison_config import ComparisonConfig
+from lidarena.evaluation.participants import check
+from lidarena.evaluation.pictures import Cell, draw_pictures
+from lidarena.evaluation.progress_report import report_progress
+from lidarena.evaluation.results import (
+    RESULTS_FILE,
+    Row,
+    check_folder,
+    summarise,
+    write_results,
+    write_results_folder,
+)
+from lidarena.evaluation.runner import list_tasks, rehearse, run_tasks
+from lidarena.evaluation.tables import csv_text, latex_text, markdown_text
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """What came of a comparison.
+
+    Attributes:
+        rows: One per environment and policy, in the order of the file.
+        folder: Where everything was written.
+        pictures: The PNG files.
+        videos: The films.
+        earlier: Where earlier results of the same name were moved, if there were any.
+    """
+
+    rows: list[Row]
+    folder: Path
+    pictures: list[Path]
+    videos: list[Path]
+    earlier: Path | None
+
+
+def compare(config: ComparisonConfig, console: Console | None = None) -> Comparison:
+    """Run every policy in every environment on the same seeds, and write what came of it.
+
+    The folder appears when everything is in it; earlier results of the same name are kept under another one.
+
+    Args:
+        config: What to compare.
+        console: Where progress is reported; nowhere if None.
+
+    Returns:
+        The rows of the tables, and where the files are.
+
+    Raises:
+        Refusal: Something in the configuration cannot be had; mostly within seconds.
+        EpisodeError: An environment or a policy raised.
+        OSError: The place of the results is not writable or full.
+    """
+    console = console or Console(quiet=True)
+    check_folder(config.folder)
+    check(config)
+    count = len(config.envs) * len(config.policies)
+    console.print(f"rehearsing {count} pairs of environment and policy", highlight=False)
+    rehearse(config)
+    found: list[list[Cell]] = []
+    rows: list[Row] = []
+
+    def fill(folder: Path) -> None:
+        found.extend(_run(config, folder / "videos", console))
+        rows.extend(summarise(cell.env.label, cell.policy.title, cell.episodes) for line in found for cell in line)
+        write_tables(folder, config, rows)
+        if config.pictures:
+            draw_pictures(found, folder / "pictures")
+
+    earlier = write_results_folder(config.folder, fill)
+    pictures, videos = (sorted((config.folder / name).glob("*.*")) for name in ("pictures", "videos"))
+    return Comparison(rows, config.folder, pictures, videos, earlier)
+
+
+def write_tables(folder: Path, config: ComparisonConfig, rows: Sequence[Row]) -> None:
+    """Write `results.json` and the tables into an existing folder."""
+    write_results(folder / RESULTS_FILE, config, rows)
+    for name, text in (
+        ("table.csv", csv_text(rows)),
+        ("table.md", markdown_text(rows)),
+        ("table.tex", latex_text(rows)),
+    ):
+        (folder / name).write_text(text, encoding="utf-8")
+
+
+def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[Cell]]:
+    tasks = list_tasks(config, videos)
+    with report_progress(len(tasks), console) as advance:
+        episodes = run_tasks(tasks, config.workers, lambda task: advance(str(task)))
+    blocks = [episodes[start : start + config.episodes] for start in range(0, len(episodes), config.episodes)]
+    cells = iter(blocks)
+    return [[Cell(env, policy, next(cells)) for policy in config.policies] for env in config.envs]

@@ -1,0 +1,80 @@
+"""Train an agent from a YAML file, or go on with a training.
+
+python train.py --config configs/train/env1_completeness.yaml --set ppo.n_steps=256 --out runs/mine
+python train.py --resume runs/mine --set total_steps=8e6
+"""
+
+import argparse
+import json
+import sys
+
+from lidarena.agents import TrainingConfig, TrainingStopped, load_config, train
+from lidarena.agents.run_folder import CONFIG_FILE
+from lidarena.world.refusals import Refusal
+
+
+def main(arguments: list[str] | None = None) -> int:
+    """Run a training; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
+    parser = _parser()
+    options = parser.parse_args(arguments)
+    if not options.config and not options.resume:
+        parser.error("give --config FILE to start a training, or --resume DIR to go on with one")
+    if options.out and options.resume:
+        parser.error("--out is for a new training; --resume goes on in its own folder")
+    try:
+        config = _config(options)
+        print(_summary(config), flush=True)
+        folder = train(config, resume=options.resume, exact_out=bool(options.out))
+    except Refusal as refusal:
+        print(refusal, file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"{error}; what was saved before is untouched", file=sys.stderr)
+        return 1
+    except TrainingStopped as stopped:
+        print(stopped, file=sys.stderr)
+        return 130
+    except KeyboardInterrupt:
+        print("interrupted before the training began; nothing was written", file=sys.stderr)
+        return 130
+    print(f"policy:   {folder}/policy.safetensors (also policy.json; in Python lidarena.agents.load({str(folder)!r}))")
+    print(f"curve:    {folder}/progress.csv, or tensorboard --logdir {folder}")
+    print(f"go on:    python train.py --resume {folder} --set total_steps=N")
+    return 0
+
+
+def _config(options: argparse.Namespace) -> TrainingConfig:
+    file = options.config or f"{options.resume}/{CONFIG_FILE}"
+    return load_config(
+        file, TrainingConfig, [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
+    )
+
+
+def _summary(config: TrainingConfig) -> str:
+    """What is going to happen, in three lines."""
+    keywords = "".join(f", {key}={value!r}" for key, value in config.env.keywords.items())
+    ppo = config.ppo
+    return (
+        f"env:      {config.env.id}{keywords}\n"
+        f"schedule: {config.total_steps:,} steps of {config.num_envs} worlds, seed {config.seed}, "
+        f"a checkpoint every {config.checkpoint_every:,}\n"
+        f"PPO:      {ppo.n_steps} steps × {config.num_envs} worlds an update, batches of {ppo.batch_size}, "
+        f"{ppo.n_epochs} epochs, learning rate {ppo.learning_rate}"
+    )
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(description="Train an agent from a YAML file, or go on with a training.")
+    parser.add_argument("--config", metavar="FILE", help="training file, such as configs/train/quick.yaml")
+    set_help = "override keys of the file, such as ppo.n_steps=256"
+    parser.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", help=set_help)
+    out_help = "run folder, over the file's own 'out'; refused if it already holds files"
+    parser.add_argument("--out", metavar="DIR", help=out_help)
+    parser.add_argument(
+        "--resume", metavar="DIR", help="run folder of a training to go on with, from its last checkpoint"
+    )
+    return parser
+
+
+if __name__ == "__main__":
+    sys.exit(main())
