@@ -23,7 +23,7 @@ compare: $(INSTALLED)
 	$(BIN)/python evaluate.py --config configs/compare/quick.yaml
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n $(TEST_PROCESSES) --dist loadfile
+	$(BIN)/python -m pytest -n $(TEST_PROCESSES) --dist loadfile --hypothesis-profile=ci
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .

@@ -43,9 +43,8 @@ def _places(comparison: Comparison) -> list[str]:
     lines = [f"tables:   {comparison.folder}/table.md (also .csv, .tex and results.json)"]
     for kind, files in (("pictures", comparison.pictures), ("videos", comparison.videos)):
         if files:
-            first = next((file for file in files if file.stem == "overview"), files[0])
-            others = f" and {len(files) - 1} more beside it" if files[1:] else ""
-            lines.append(f"{kind + ':':9} {first}{others}")
+            others = f" and {len(files) - 1} more there" if files[1:] else ""
+            lines.append(f"{kind + ':':9} {files[0]}{others}")
     if comparison.earlier is not None:
         lines.append(f"earlier:  the results that stood there are now in {comparison.earlier}")
     return lines

@@ -8,8 +8,8 @@ import argparse
 import json
 import sys
 
-from lidarena.agents import TrainingConfig, TrainingStopped, load_config, train
-from lidarena.agents.run_folder import CONFIG_FILE
+from lidarena import agents
+from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.world.refusals import Refusal
 
 
@@ -24,14 +24,14 @@ def main(arguments: list[str] | None = None) -> int:
     try:
         config = _config(options)
         print(_summary(config), flush=True)
-        folder = train(config, resume=options.resume, exact_out=bool(options.out))
+        folder = agents.train(config, resume=options.resume, exact_out=bool(options.out))
     except Refusal as refusal:
         print(refusal, file=sys.stderr)
         return 2
     except OSError as error:
         print(f"{error}; what was saved before is untouched", file=sys.stderr)
         return 1
-    except TrainingStopped as stopped:
+    except agents.TrainingStopped as stopped:
         print(stopped, file=sys.stderr)
         return 130
     except KeyboardInterrupt:
@@ -45,7 +45,7 @@ def main(arguments: list[str] | None = None) -> int:
 
 def _config(options: argparse.Namespace) -> TrainingConfig:
     file = options.config or f"{options.resume}/{CONFIG_FILE}"
-    return load_config(
+    return agents.load_config(
         file, TrainingConfig, [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
     )
 

@@ -87,9 +87,10 @@ def restore(folder: Path, model: PPO) -> float:
         if about["version"] != _VERSION:
             raise ConfigError(f"the checkpoint {str(folder)!r} is of version {about['version']}, not {_VERSION}")
         _restore_model(safetensors.torch.load_file(folder / "model.safetensors"), model)
-        _restore_trainer(_load_arrays(folder / "trainer.npz"), about, model)
-        _restore_worlds(_load_arrays(folder / "worlds.npz"), model)
-        _restore_generators(_load_arrays(folder / "trainer.npz"), about, model)
+        arrays = _load_arrays(folder / "trainer.npz")
+        _restore_worlds(_load_arrays(folder / "worlds.npz"), arrays, model)
+        _restore_trainer(arrays, about, model)
+        _restore_generators(arrays, about, model)  # last, since making the worlds may have drawn from them
         return float(about["seconds"])
     except ConfigError:
         raise
@@ -169,24 +170,23 @@ def _restore_model(tensors: dict[str, torch.Tensor], model: PPO) -> None:
     optimizer.load_state_dict({"state": moments, "param_groups": optimizer.state_dict()["param_groups"]})
 
 
-def _restore_worlds(arrays: Arrays, model: PPO) -> None:
+def _restore_worlds(state: Arrays, arrays: Arrays, model: PPO) -> None:
+    """Put the worlds back, and what the training saw of them last."""
     batch = batch_of(model)
-    counters = batch.get_state()
-    first = model.get_env().reset()  # type: ignore[union-attr]  # batch_of has looked
+    env = model.get_env()
+    model._last_obs = env.reset() if env is not None else None  # type: ignore[assignment]  # an array or a dict
+    model._last_episode_starts = np.ones(batch.num_envs, dtype=bool)
+    batch.episodes = int(arrays["batch.episodes"])
     worlds = batch.env.unwrapped
     if isinstance(worlds, Restorable):
-        worlds.set_state(arrays)
-        batch.set_state(counters)
-    else:
-        model._last_obs = first  # type: ignore[assignment]  # the worlds start over, so the training is not exactly the same
-        model._last_episode_starts = np.ones(batch.num_envs, dtype=bool)
+        worlds.set_state(state)
+        batch.set_state({key.removeprefix("batch."): arrays[key] for key in arrays if key.startswith("batch.")})
+        named = {key.removeprefix("last_obs."): arrays[key] for key in arrays if key.startswith("last_obs.")}
+        model._last_obs = named or arrays["last_obs"]
+        model._last_episode_starts = arrays["last_episode_starts"]
 
 
 def _restore_trainer(arrays: Arrays, about: dict[str, Any], model: PPO) -> None:
-    batch_of(model).set_state({key.removeprefix("batch."): arrays[key] for key in arrays if key.startswith("batch.")})
-    named = {key.removeprefix("last_obs."): arrays[key] for key in arrays if key.startswith("last_obs.")}
-    model._last_obs = named or arrays["last_obs"]
-    model._last_episode_starts = arrays["last_episode_starts"]
     normalizer = model.get_vec_normalize_env()
     if normalizer is not None:
         mean, variance, count = (arrays[f"reward.{key}"] for key in _NORMALIZER)
@@ -217,5 +217,5 @@ def _save_arrays(path: Path, arrays: Arrays) -> None:
 
 
 def _load_arrays(path: Path) -> Arrays:
-    with np.load(path, allow_pickle=False) as archive:
+    with path.open("rb") as stream, np.load(stream, allow_pickle=False) as archive:
         return {key: archive[key] for key in archive.files}

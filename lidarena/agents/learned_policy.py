@@ -6,7 +6,6 @@ import numpy as np
 import torch
 from gymnasium import spaces
 from numpy.typing import NDArray
-from stable_baselines3.common.distributions import CategoricalDistribution, DiagGaussianDistribution
 from stable_baselines3.common.policies import ActorCriticPolicy
 
 from lidarena.world.refusals import PolicyFileError
@@ -68,32 +67,32 @@ class LearnedPolicy:
             PolicyFileError: The observation is not of the kind that the policy was trained on.
         """
         self._check(observation)
-        with torch.no_grad():
-            tensors, _ = self.network.obs_to_tensor(observation)
-            distribution = self.network.get_distribution(tensors)
-            if self.deterministic:
-                action = distribution.get_actions(deterministic=True).cpu().numpy()[0]
-            else:
-                action = self._draw(distribution)
-        if isinstance(self.action_space, spaces.Discrete):
-            return int(action)
-        if isinstance(self.action_space, spaces.Box):
-            return np.clip(action, self.action_space.low, self.action_space.high).astype(self.action_space.dtype)
-        return action.reshape(self.action_space.shape)
+        space, network = self.action_space, self.network
+        with torch.inference_mode():
+            tensors, _ = network.obs_to_tensor(observation)
+            features: Any = network.extract_features(tensors, network.pi_features_extractor)
+            outputs = network.action_net(network.mlp_extractor.forward_actor(features))
+            if isinstance(space, spaces.Discrete):
+                return int(np.argmax(self._logits(outputs)))
+            if isinstance(space, spaces.Box):
+                return np.clip(self._numbers(outputs), space.low, space.high).astype(space.dtype).reshape(space.shape)
+            if not self.deterministic:
+                raise PolicyFileError(f"actions of {space} cannot be drawn; load the policy with deterministic=True")
+            distribution = network.get_distribution(tensors)
+            return distribution.get_actions(deterministic=True).cpu().numpy().reshape(space.shape)
 
-    def _draw(self, distribution: Any) -> NDArray[Any]:
-        """Draw an action from the policy's own generator, so that a seed fixes an episode."""
-        if isinstance(distribution, CategoricalDistribution):
-            logits = distribution.distribution.logits.cpu().numpy()[0].astype(np.float64)
-            return np.asarray(np.argmax(logits + self._rng.gumbel(size=logits.shape)))
-        if isinstance(distribution, DiagGaussianDistribution):
-            mean, deviation = (
-                tensor.cpu().numpy()[0] for tensor in (distribution.distribution.mean, distribution.distribution.stddev)
-            )
-            return np.asarray(mean + deviation * self._rng.standard_normal(mean.shape))
-        raise PolicyFileError(
-            f"actions of {self.action_space} can only be taken with deterministic=True, the most probable one"
-        )
+    def _logits(self, outputs: torch.Tensor) -> NDArray[np.float64]:
+        """Logits whose largest is the action: of the network, or shaken so that it is a draw (the Gumbel trick)."""
+        logits: NDArray[np.float64] = outputs.cpu().numpy()[0].astype(np.float64)
+        return logits if self.deterministic else logits + self._rng.gumbel(size=logits.shape)
+
+    def _numbers(self, outputs: torch.Tensor) -> NDArray[np.float64]:
+        """Mean of the Gaussian, or a draw from it; the policy's own generator makes a seed fix an episode."""
+        mean: NDArray[np.float64] = outputs.cpu().numpy()[0].astype(np.float64)
+        if self.deterministic:
+            return mean
+        deviation: NDArray[np.float64] = np.exp(self.network.log_std.cpu().numpy().astype(np.float64))
+        return mean + deviation * self._rng.standard_normal(mean.shape)
 
     def _check(self, observation: Any) -> None:
         """Refuse an observation of another environment before PyTorch gets lost in it."""

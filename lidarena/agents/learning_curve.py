@@ -3,9 +3,8 @@
 import csv
 import io
 import math
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
 
 from lidarena.agents.atomic_files import write_text
 
@@ -76,7 +75,7 @@ class LearningCurve:
         self._events.close()
 
     def _cut(self, after: int) -> None:
-        rows: Iterable[dict[str, Any]] = []
+        rows = []
         if self._file.exists():
             with self._file.open(encoding="utf-8", newline="") as stream:
                 rows = [row for row in csv.DictReader(stream) if _step(row) <= after]
@@ -93,9 +92,11 @@ def _text(value: float | None) -> str:
     )
 
 
-def _step(row: Mapping[str, str]) -> float:
+def _step(row: Mapping[str, str | None]) -> float:
     """The step of a row; a row that a crash has torn counts as later than any."""
+    if None in row.values():
+        return math.inf
     try:
-        return int(row["step"])
-    except (TypeError, ValueError):
+        return int(row.get("step") or "")
+    except ValueError:
         return math.inf

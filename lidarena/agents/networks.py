@@ -12,6 +12,7 @@ from stable_baselines3.common.policies import (
     MultiInputActorCriticPolicy,
 )
 from stable_baselines3.common.preprocessing import is_image_space
+from stable_baselines3.common.torch_layers import CombinedExtractor, FlattenExtractor, NatureCNN
 from torch import nn
 
 from lidarena.agents.training_config import Activation, Layers, PolicyClass, PolicyConfig
@@ -33,6 +34,8 @@ _CLASSES: dict[PolicyClass, type[ActorCriticPolicy]] = {
     "CnnPolicy": ActorCriticCnnPolicy,
     "MultiInputPolicy": MultiInputActorCriticPolicy,
 }
+
+_EXTRACTORS = (FlattenExtractor, NatureCNN, CombinedExtractor)
 
 
 class Architecture(ConfigModel):
@@ -76,6 +79,7 @@ def describe(network: ActorCriticPolicy) -> Architecture:
     names: list[PolicyClass] = [name for name, kind in _CLASSES.items() if type(network) is kind]
     activations = [name for name, kind in ACTIVATIONS.items() if network.activation_fn is kind]
     plain = not network.use_sde and network.share_features_extractor and not network.features_extractor_kwargs
+    plain = plain and network.features_extractor_class in _EXTRACTORS
     if not names or not activations or not plain:
         raise PolicyFileError(
             f"a network of class {type(network).__name__} cannot be written to a policy file; it should be one of "
@@ -104,19 +108,15 @@ def rebuild(
                 net_arch=architecture.net_arch,
                 activation_fn=ACTIVATIONS[architecture.activation],
             )
-        except (
-            AssertionError,
-            NotImplementedError,
-            TypeError,
-            ValueError,
-            KeyError,
-            RuntimeError,
-            MemoryError,
-        ) as error:
-            reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
-            raise PolicyFileError(
-                f"a {architecture.class_name} cannot be built for observations of {observation_space}: {reason}"
-            ) from None
+        except (ArithmeticError, AssertionError, AttributeError, LookupError, MemoryError) as error:
+            raise _unbuildable(architecture, observation_space, error) from None
+        except (NotImplementedError, RuntimeError, TypeError, ValueError) as error:
+            raise _unbuildable(architecture, observation_space, error) from None
+
+
+def _unbuildable(architecture: Architecture, space: spaces.Space[Any], error: Exception) -> PolicyFileError:
+    reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+    return PolicyFileError(f"a {architecture.class_name} cannot be built for observations of {space}: {reason}")
 
 
 def weights_of(network: nn.Module) -> dict[str, torch.Tensor]:

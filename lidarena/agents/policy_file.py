@@ -94,7 +94,7 @@ def save_policy(
         training=training or {},
         versions=library_versions(),
     )
-    text = json.dumps(card.model_dump(mode="json", by_alias=True), indent=2, allow_nan=False)
+    text = json.dumps(card.model_dump(mode="json", by_alias=True), indent=2)
     write_bytes(Path(folder) / f"{name}.safetensors", data)
     return write_text(Path(folder) / f"{name}.json", text + "\n")
 

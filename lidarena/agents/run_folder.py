@@ -4,11 +4,9 @@ from pathlib import Path
 from typing import Any
 
 from lidarena.agents import checkpoint
-from lidarena.agents.training_config import TrainingConfig
+from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.agents.yaml_config import load_config
 from lidarena.world.refusals import ConfigError
-
-CONFIG_FILE = "config.yaml"
 
 _MAY_CHANGE = ("total_steps", "checkpoint_every", "torch_threads", "out")
 """Keys that may differ when a training goes on, since no step taken so far depends on them."""

@@ -34,7 +34,10 @@ def to_json(space: spaces.Space[Any]) -> dict[str, Any]:
     if isinstance(space, spaces.MultiDiscrete):
         return {"type": "MultiDiscrete", "nvec": space.nvec.tolist()}
     if isinstance(space, spaces.MultiBinary):
-        return {"type": "MultiBinary", "shape": list(space.shape)}
+        return {
+            "type": "MultiBinary",
+            "n": int(space.n) if isinstance(space.n, int | np.integer) else list(space.shape),
+        }
     raise PolicyFileError(f"a space of type {type(space).__name__} cannot be written to a policy file")
 
 
@@ -66,7 +69,8 @@ def _make(description: dict[str, Any]) -> spaces.Space[Any]:
         case "MultiDiscrete":
             return spaces.MultiDiscrete(np.asarray(description["nvec"], dtype=np.int64))
         case "MultiBinary":
-            return spaces.MultiBinary(_shape(description["shape"]))
+            n = description["n"]
+            return spaces.MultiBinary(_shape(n) if isinstance(n, list) else _shape([n])[0])
     raise ValueError("unknown type")
 
 

@@ -21,7 +21,7 @@ from lidarena.agents.learning_curve import LearningCurve
 from lidarena.agents.networks import ACTIVATIONS, all_finite, class_for, weights_of
 from lidarena.agents.policy_file import save_policy
 from lidarena.agents.progress import ProgressDisplay, show_progress
-from lidarena.agents.training_config import EnvironmentConfig, Linear, TrainingConfig
+from lidarena.agents.training_config import CONFIG_FILE, EnvironmentConfig, Linear, TrainingConfig
 from lidarena.agents.vec_env import BatchVecEnv
 from lidarena.agents.yaml_config import dump_config
 from lidarena.world.refusals import ConfigError, suggest
@@ -70,7 +70,7 @@ def train(
             folder = run_folder.claim(config.out, exact_out)
         seconds = checkpoint.restore(start, model) if start else 0.0
         _tell(f"run:      {folder}{f', from step {model.num_timesteps:,}' if start else ''}", progress)
-        dump_config(config.model_copy(update={"out": str(folder)}), folder / run_folder.CONFIG_FILE)
+        dump_config(config.model_copy(update={"out": str(folder)}), folder / CONFIG_FILE)
         _run(_Run(config, folder, model, seconds), progress)
     return folder
 
@@ -81,11 +81,11 @@ def make_batch(env: EnvironmentConfig, num_envs: int) -> BatchVecEnv:
     Raises:
         ConfigError: There is no such environment or keyword, or it has no batch of its own.
     """
-    name = env.id.rpartition(":")[2]
+    module, _, name = env.id.rpartition(":")
     try:
         batch = gym.make_vec(env.id, num_envs=num_envs, vectorization_mode="vector_entry_point", **env.keywords)
-    except ModuleNotFoundError as error:
-        raise ConfigError(f"'env.id' is {env.id!r}, but there is no module {error.name!r}") from None
+    except ModuleNotFoundError:
+        raise ConfigError(f"'env.id' is {env.id!r}, but the module {module!r} cannot be imported") from None
     except gym.error.UnregisteredEnv:
         known = [known for known in gym.registry if known.partition("/")[0] in ("lidarena", name.partition("/")[0])]
         raise ConfigError(f"there is no environment {env.id!r}{suggest(name, known)}") from None

@@ -12,6 +12,9 @@ Activation = Literal["tanh", "relu", "leaky_relu", "elu", "silu", "gelu"]
 Width = Annotated[int, Field(ge=1, le=65_536)]
 Layers = Annotated[list[Width], Field(max_length=64)]
 
+CONFIG_FILE = "config.yaml"
+"""Name of the resolved training file in a run folder."""
+
 _RESERVED_KEYWORDS = {"num_envs": "num_envs beside env", "vectorization_mode": None, "vector_kwargs": None}
 
 

@@ -28,7 +28,7 @@ _VALUE_WIDTH = 60
 class ConfigModel(BaseModel):
     """Base of every configuration: immutable, no unknown keys, no NaN, and no `true` where a number belongs."""
 
-    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False)
+    model_config = ConfigDict(extra="forbid", frozen=True, allow_inf_nan=False, ser_json_inf_nan="constants")
 
     @field_validator("*", mode="before")
     @classmethod
@@ -56,9 +56,14 @@ class _Loader(yaml.SafeLoader):
         return super().construct_mapping(node, deep=deep)
 
 
-_Loader.add_implicit_resolver(
-    "tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+.0123456789")
-)
+class _Dumper(yaml.SafeDumper):
+    """Writes what `_Loader` reads: the text ``3e-4`` goes into quotes."""
+
+
+for _side in (_Loader, _Dumper):
+    _side.add_implicit_resolver(
+        "tag:yaml.org,2002:float", re.compile(r"^[-+]?(\d+\.?\d*|\.\d+)[eE][-+]?\d+$"), list("-+.0123456789")
+    )
 
 
 def load_config(path: str | Path, model: type[M], overrides: Sequence[str] = ()) -> M:
@@ -90,10 +95,10 @@ def check_config(
         overrides: See `load_config`.
         origin: How a refusal calls the place that ``content`` came from.
     """
-    values = _copy(content)
-    for override in overrides:
-        _apply(values, override)
     try:
+        values = _copy(content)
+        for override in overrides:
+            _apply(values, override)
         return model.model_validate(values)
     except ValidationError as error:
         raise ConfigError(_sentence(error, model, origin)) from None
@@ -130,7 +135,8 @@ def read_yaml(path: str | Path) -> dict[str, Any]:
 
 def dump_config(model: BaseModel, path: str | Path) -> Path:
     """Write a configuration so that `load_config` gives it back equal; the file appears whole or not at all."""
-    text = yaml.safe_dump(model.model_dump(mode="json", by_alias=True), sort_keys=False, allow_unicode=True, width=120)
+    content = model.model_dump(mode="json", by_alias=True)
+    text = yaml.dump(content, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=120)
     return write_text(path, text)
 
 

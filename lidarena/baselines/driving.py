@@ -21,7 +21,7 @@ from lidarena.planning.inflation import Inflation, clearance, inflate, open_star
 from lidarena.planning.path_following import PathFollower, blocked_ahead
 from lidarena.planning.steering import Surroundings
 
-_NEARBY = 3.0  # half the side of the window in which commands are planned (m)
+_NEARBY = 1.2  # half the side of the window that is looked at before every command (m)
 _ESCAPE = 0.6  # how far around a robot in the lethal zone cells are opened (m)
 
 
@@ -82,6 +82,7 @@ class Driver:
         self._observation, self._info = observation, info
         self.pose = np.array(info["pose"], dtype=np.float64)
         self._around = self._nearby()
+        self._is_clear = self._follower.is_clear(self.pose, self._around)
 
     def _nearby(self) -> Surroundings:
         """Clearances in a window around the robot, from the newest map."""
@@ -94,7 +95,7 @@ class Driver:
 
     def _surroundings(self, occupancy: NDArray[np.int8], origin: tuple[float, float]) -> Surroundings:
         resolution = float(self._info["resolution"])
-        gap = clearance(occupancy, resolution, self.inflation.occupied_from)
+        gap = clearance(occupancy, resolution, self.inflation.occupied_from, self.inflation.radius + resolution)
         closed = (occupancy < 0) | (occupancy >= self.inflation.occupied_from)
         return Surroundings(gap, closed, resolution, origin)
 
@@ -129,7 +130,7 @@ class Driver:
             return False
         if math.dist(goal, self.pose[:2]) <= self.arrival:
             self._follower.clear()  # it is there; turning lets it look around
-        elif not self._follower.plan(path, self.pose, self._around):
+        elif not self._follower.plan(path, self.pose, terrain.around):
             return False
         self.goal, self._path = goal, path
         return True
@@ -166,11 +167,11 @@ class Driver:
             return False
         if not len(self._follower.planned):
             return True
-        return not self._follower.is_clear(self.pose, self._around) or self._is_path_blocked()
+        return not self._is_clear or self._is_path_blocked()
 
     def action(self) -> Any:
         """Return the next action: the next planned command if map and beams say that it is safe, else a turn."""
-        if self._follower.is_clear(self.pose, self._around):
+        if self._follower.is_clear(self.pose, self._around):  # commands may be newer than what sense() checked
             command = self._follower.next()
             if command is not None and not self.robot.would_touch(command, self._observation):
                 return self.robot.action(command)

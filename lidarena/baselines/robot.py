@@ -6,6 +6,7 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
+from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.planning.steering import Commands
@@ -15,7 +16,7 @@ FULL_SPEED, TURN_SPEED, TURN_RATE = 0.5, 0.05, 0.3
 """DA-SLAM's actions: forward at 0.5 m/s; left and right at 0.05 m/s and 0.3 rad/s."""
 LEFT = (TURN_SPEED, TURN_RATE)
 _STEERED = [(FULL_SPEED, 0.0), (0.0, 1.0), (0.0, -1.0), (FULL_SPEED, 0.5), (FULL_SPEED, -0.5)]
-_BEAM_ANGLES = np.radians([0.0, 45.0, 90.0, -45.0, -90.0])
+_BEAM_ANGLES = np.array([0.0, math.pi / 4, math.pi / 2, -math.pi / 4, -math.pi / 2])
 _MAX_RANGE = 3.5
 _TOUCH = 0.12  # a beam shorter than this ends the episode (m)
 _BEAM_SLACK = 0.03  # three sigma of the lidar (m)
@@ -65,12 +66,13 @@ class Robot:
 
         A command that takes the robot away from what a beam has hit is never held against that beam.
         """
-        points = _hits(observation)
-        if not len(points):
-            return False
-        before = np.hypot(points[:, 0], points[:, 1])
-        after = np.hypot(*(points - self.commands.moves[command, :2]).T)
-        return bool(np.any((after < _TOUCH + _BEAM_SLACK) & (after < before)))
+        angles: NDArray[np.float64] = _BEAM_ANGLES
+        if isinstance(observation, Mapping):
+            scan = np.asarray(observation["scan"], np.float64)
+            angles = np.linspace(0.0, 2.0 * math.pi, len(scan), endpoint=False)
+        else:
+            scan = np.asarray(observation, np.float64)[: len(angles)]
+        return bool(_touches(scan, angles, *self.commands.moves[command, :2]))
 
 
 def _decision_period(env: Any) -> float:
@@ -82,14 +84,13 @@ def _decision_period(env: Any) -> float:
     return float(period)
 
 
-def _hits(observation: Any) -> NDArray[np.float64]:
-    """What the beams hit, (n, 2) x, y in the robot's frame; beams without an echo are left out."""
-    if isinstance(observation, Mapping):
-        scan = np.asarray(observation["scan"], np.float64)
-        angles = np.arange(len(scan)) * (2.0 * math.pi / len(scan))
-    else:
-        scan, angles = np.asarray(observation, np.float64)[:5], _BEAM_ANGLES
-    ranges = scan * _MAX_RANGE
-    hit = (scan > 0.0) & (scan < 1.0)
-    points: NDArray[np.float64] = np.stack([ranges * np.cos(angles), ranges * np.sin(angles)], axis=1)[hit]
-    return points
+@njit(cache=True, nogil=True)
+def _touches(scan: NDArray[np.float64], angles: NDArray[np.float64], dx: float, dy: float) -> bool:
+    """Whether (dx, dy) lies too near to what a beam of ``scan`` (n,) at ``angles`` (n,) hit, and nearer than before."""
+    for i in range(scan.shape[0]):
+        before = scan[i] * _MAX_RANGE
+        if 0.0 < scan[i] < 1.0:
+            after = math.hypot(before * math.cos(angles[i]) - dx, before * math.sin(angles[i]) - dy)
+            if after < _TOUCH + _BEAM_SLACK and after < before:
+                return True
+    return False

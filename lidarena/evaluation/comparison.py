@@ -66,17 +66,18 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
     rehearse(config)
     found: list[list[Cell]] = []
     rows: list[Row] = []
+    drawn: list[Path] = []
 
     def fill(folder: Path) -> None:
         found.extend(_run(config, folder / "videos", console))
         rows.extend(summarise(cell.env.label, cell.policy.title, cell.episodes) for line in found for cell in line)
         write_tables(folder, config, rows)
         if config.pictures:
-            draw_pictures(found, folder / "pictures")
+            drawn.extend(path.relative_to(folder) for path in draw_pictures(found, folder / "pictures"))
 
     earlier = write_results_folder(config.folder, fill)
-    pictures, videos = (sorted((config.folder / name).glob("*.*")) for name in ("pictures", "videos"))
-    return Comparison(rows, config.folder, pictures, videos, earlier)
+    videos = sorted((config.folder / "videos").rglob("*.*"))
+    return Comparison(rows, config.folder, [config.folder / path for path in drawn], videos, earlier)
 
 
 def write_tables(folder: Path, config: ComparisonConfig, rows: Sequence[Row]) -> None:

@@ -118,7 +118,14 @@ class ComparisonConfig(ConfigModel):
         return range(self.seed, self.seed + self.episodes)
 
 
+def file_name(label: str) -> str:
+    """Return a label without what file systems dislike."""
+    return "".join(sign if sign.isalnum() or sign in "-_." else "-" for sign in label).lstrip(".") or "-"
+
+
 def _refuse_twins(labels: list[str], what: str, key: str) -> None:
-    twins = sorted(label for label, count in Counter(labels).items() if count > 1)
-    if twins:
-        raise ValueError(f"two {what} are called {twins[0]!r}; give each its own {key!r}")
+    """Refuse labels that are equal, or would be as names of files (where case may not count)."""
+    counts = Counter(file_name(label).casefold() for label in labels)
+    for label in labels:
+        if counts[file_name(label).casefold()] > 1:
+            raise ValueError(f"two {what} are called {label!r} or nearly so; give each its own {key!r}")

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.evaluation.participants import Env, Policy
+from lidarena.baselines import Policy
+from lidarena.evaluation.participants import Env
 from lidarena.evaluation.statistics import geometric_mean
 
 Floats = NDArray[np.float64]

@@ -4,12 +4,13 @@ import importlib
 from collections.abc import Mapping
 from functools import partial
 from pathlib import Path
-from typing import Any, Protocol, runtime_checkable
+from typing import Any
 
 import gymnasium as gym
 
 import lidarena  # noqa: F401  registers the environments, also in a spawned worker
 from lidarena import baselines
+from lidarena.baselines import Policy
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.world.refusals import ConfigError, suggest
 
@@ -17,20 +18,6 @@ Env = gym.Env[Any, Any]
 
 AGENT_KEYWORDS = ("observation", "reward", "action")
 """Keywords of the environments that change what an observation or an action means."""
-
-
-@runtime_checkable
-class Policy(Protocol):
-    """What is compared: the one protocol of learned agents and classical methods.
-
-    A policy may have an attribute ``finished``; the episode ends when it turns true.
-    """
-
-    def reset(self, seed: int | None = None) -> None:
-        """Forget the last episode."""
-
-    def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        """Return the action for an observation and an ``info``."""
 
 
 def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str | None = None) -> tuple[Env, Policy]:

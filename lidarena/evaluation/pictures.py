@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import Episode, Trace
-from lidarena.evaluation.runner import file_stem
+from lidarena.evaluation.runner import place_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -40,13 +40,12 @@ def draw_pictures(cells: Sequence[Sequence[Cell]], folder: Path) -> list[Path]:
 
     Args:
         cells: ``cells[environment][policy]``.
-        folder: Where the PNG files go; it is made.
+        folder: Where the PNG files go; it is made if there is anything to draw.
 
     Returns:
-        The files: ``overview.png`` and ``progress.png`` first, then one per environment and policy. None where the
+        The files: ``overview.png`` and ``progress.png`` first, then ``ENVIRONMENT/POLICY.png``. None where the
         environments give neither positions nor completeness.
     """
-    folder.mkdir(parents=True, exist_ok=True)
     traced = [row for row in cells if all(_trace(cell) is not None for cell in row)]
     paths = []
     if traced:
@@ -56,7 +55,7 @@ def draw_pictures(cells: Sequence[Sequence[Cell]], folder: Path) -> list[Path]:
         paths.append(_save(progress(curves), folder / "progress.png"))
     for row in traced:
         for cell in row:
-            paths.append(_save(single(cell), folder / f"{file_stem(cell.env, cell.policy)}.png"))
+            paths.append(_save(single(cell), folder / place_of(cell.env, cell.policy, "png")))
     return paths
 
 
@@ -254,5 +253,6 @@ def _figure(width: float, height: float) -> "Figure":
 
 
 def _save(figure: "Figure", path: Path) -> Path:
+    path.parent.mkdir(parents=True, exist_ok=True)
     figure.savefig(path)  # a bare Figure renders PNG with Agg
     return path

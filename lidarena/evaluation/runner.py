@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 import cv2
 import numba
 
-from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
+from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
 from lidarena.evaluation.participants import make_participants
 from lidarena.evaluation.videos import Film
@@ -81,15 +81,14 @@ def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
         for policy in config.policies:
             for seed in config.seeds:
                 first = seed == config.seed
-                film = videos / f"{file_stem(env, policy)}.{config.videos}" if config.videos and first else None
+                film = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
                 tasks.append(Task(env, policy, seed, config.pictures and first, film))
     return tasks
 
 
-def file_stem(env: EnvEntry, policy: PolicyEntry) -> str:
-    """Return the name of the files about an environment and a policy, without what file systems dislike."""
-    text = f"{env.label}_{policy.title}"
-    return "".join(sign if sign.isalnum() or sign in "-_." else "-" for sign in text)
+def place_of(env: EnvEntry, policy: PolicyEntry, suffix: str) -> Path:
+    """Return where a picture or video of an environment and a policy lies in its folder."""
+    return Path(file_name(env.label)) / f"{file_name(policy.title)}.{suffix}"
 
 
 def rehearse(config: ComparisonConfig) -> None:

@@ -103,15 +103,17 @@ def _bca_tails(values: Floats, statistic: Statistic, estimate: float, replicates
     The bias z0 comes from the share of replicates below the estimate (half of the ties counted), the acceleration
     from the jackknife. Where a resampled statistic cannot be corrected (no spread), ``tails`` is returned.
     """
-    tie = 1e-9 * float(np.ptp(values))  # sums in another order are the same number: rounding must not break ties
+    # Sums in another order are the same number: rounding must not break ties.
+    tie = 1e-9 * float(np.ptp(values)) + 1e-15 * float(np.abs(values).max())
     share = (np.mean(replicates < estimate - tie) + np.mean(replicates <= estimate + tie)) / 2
     left_out = np.lib.stride_tricks.sliding_window_view(np.concatenate([values, values[:-1]]), values.size)[:, 1:]
     influence = np.mean(statistic(left_out)) - statistic(left_out)
-    spread = float(np.sum(influence**2))
-    if not 0 < share < 1 or spread <= 0:
+    largest = float(np.abs(influence).max())
+    if not 0 < share < 1 or largest == 0:
         return tails
+    influence = influence / largest  # the cubes of small numbers would vanish
     bias = ndtri(share)
-    acceleration = np.sum(influence**3) / spread**1.5 / 6
+    acceleration = np.sum(influence**3) / np.sum(influence**2) ** 1.5 / 6
     shifted = bias + ndtri(tails)
     corrected: Floats = ndtr(bias + shifted / (1 - acceleration * shifted))
     return corrected

@@ -17,8 +17,8 @@ from lidarena.evaluation.statistics import Interval
 
 ABSENT = "–"
 NOTE = (
-    "Mean over episodes and its 95% interval (BCa bootstrap; Wilson's and Newcombe's for shares). Policies met the same "
-    "seeds. "
+    "Mean over episodes and its 95% interval (BCa bootstrap; Wilson's and Newcombe's for shares). "
+    "Policies met the same seeds. "
     "Bold: the best, and what cannot be told from it by paired differences. Path, time, D-optimality and pose error "
     "are compared only among policies that explored as much as the best; they count every episode, also those cut "
     "short by a collision."
@@ -79,7 +79,7 @@ def markdown_text(rows: Sequence[Row]) -> str:
     sections = []
     for group in by_env(rows):
         measures = _measured(group)
-        sections.append(f"## {_cell(group[0].env)} ({group[0].episodes} episodes)\n")
+        sections.append(f"## {_cell(group[0].env)} ({_episodes(group)})\n")
         winners = {measure.name: best(group, measure) for measure in measures}
 
         def absolute(row: Row, measure: Measure, winners: dict[str, set[str]] = winners) -> str:
@@ -105,7 +105,7 @@ def latex_text(rows: Sequence[Row]) -> str:
         lines.append(r"\midrule")
         for place, row in enumerate(group):
             cells = [_latex_cell(row, measure, group) for measure in measures]
-            env = _latex(f"{row.env} ({row.episodes} episodes)") if place == 0 else ""
+            env = _latex(f"{row.env} ({_episodes(group)})") if place == 0 else ""
             lines.append(" & ".join([env, _latex(row.policy), *cells]) + r" \\")
     return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", *(f"% {line}" for line in NOTE.split(". "))]) + "\n"
 
@@ -119,7 +119,8 @@ def terminal_table(rows: Sequence[Row], width: int = 80) -> Group:
     """
     tables: list[Table | Text] = []
     for group in by_env(rows):
-        table = Table(title=f"{group[0].env} · {group[0].episodes} episodes each", title_justify="left", min_width=40)
+        title = Text(f"{group[0].env} · {_episodes(group)} each")
+        table = Table(title=title, title_justify="left", min_width=40)
         table.add_column("mean [95% interval]")
         for row in group:
             table.add_column(Text(row.policy), justify="right")
@@ -133,6 +134,10 @@ def terminal_table(rows: Sequence[Row], width: int = 80) -> Group:
 
 def _measured(rows: Sequence[Row]) -> list[Measure]:
     return [measure for measure in MEASURES if any(measure.name in row.metrics for row in rows)]
+
+
+def _episodes(group: Sequence[Row]) -> str:
+    return f"{group[0].episodes} episode{'s' if group[0].episodes > 1 else ''}"
 
 
 def _interval(row: Row, measure: Measure) -> Interval:

@@ -138,6 +138,18 @@ def _flood(
 
 
 @njit(cache=True, nogil=True)
+def _measure(cells: NDArray[np.int32], row: int, col: int) -> tuple[float, float, float]:
+    """Distance from (row, col) to the nearest of ``cells`` (n, 2), and their mean row and column."""
+    nearest, rows, cols = np.inf, 0.0, 0.0
+    for i in range(cells.shape[0]):
+        r, c = float(cells[i, 0]), float(cells[i, 1])
+        nearest = min(nearest, (r - row) ** 2 + (c - col) ** 2)
+        rows += r
+        cols += c
+    return math.sqrt(nearest), rows / cells.shape[0], cols / cells.shape[0]
+
+
+@njit(cache=True, nogil=True)
 def nearest_cell(mask: NDArray[np.bool_], row: float, col: float) -> tuple[int, int]:
     """Return the cell of ``mask`` nearest to a point in straight distance, the first in raster order among equals.
 
@@ -203,12 +215,11 @@ def find_frontiers(
         size = int(last - first)
         if size * resolution < min_frontier_size - 1e-9:
             continue
-        members = cells[first:last].astype(np.int64)
-        centroid = (float(members[:, 0].mean()), float(members[:, 1].mean()))
-        goal = nearest_cell(targets, *centroid)
+        distance, *centre = _measure(cells[first:last], *start)
+        goal = nearest_cell(targets, *centre)
         if goal[0] < 0:
             return []
-        distance = math.sqrt(float(((members - np.asarray(start)) ** 2).sum(axis=1).min()))
         cost = potential_scale * distance * resolution - gain_scale * size * resolution
-        found.append(Frontier(members, size, distance, cost, centroid, (int(goal[0]), int(goal[1]))))
+        members = cells[first:last].astype(np.int64)
+        found.append(Frontier(members, size, distance, cost, (centre[0], centre[1]), (int(goal[0]), int(goal[1]))))
     return sorted(found, key=lambda frontier: frontier.cost)

@@ -115,7 +115,7 @@ class PathFollower:
         self._queue = np.empty(0, np.int64)
 
     def plan(self, path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings) -> bool:
-        """Search commands along ``path``; what was planned before stays where nothing is found.
+        """Search commands along ``path``; what was planned before stays where nothing is found, or if it still serves.
 
         Args:
             path: (n, 2) x, y (m), n >= 1, the end last.
@@ -125,6 +125,8 @@ class PathFollower:
         Returns:
             Whether a sequence was found.
         """
+        if len(self._queue) and self._leads_to(path, pose, around):
+            return True
         for margin, lookahead in (
             (self.margin, self.lookahead),
             (self.least_margin, self.lookahead),
@@ -136,6 +138,12 @@ class PathFollower:
                 self._queue = sequence
                 return True
         return False
+
+    def _leads_to(self, path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings) -> bool:
+        """Whether the planned commands end where they would be planned to now, as they do while the robot turns."""
+        index = carrot(path, pose, around.gap, around.closed, around.frame, self.lookahead, self.margin)
+        end = predict(pose, self.commands, self._queue)[-1]
+        return math.dist(end[:2], path[index]) <= self.reach and self.is_clear(pose, around, len(self._queue))
 
     def _towards(
         self,
@@ -150,7 +158,7 @@ class PathFollower:
         x, y = path[index]
         return steer(around, pose, (float(x), float(y)), self.commands, margin, self.preferred, reach=reach)
 
-    def is_clear(self, pose: NDArray[np.float64], around: Surroundings, horizon: int = 20) -> bool:
+    def is_clear(self, pose: NDArray[np.float64], around: Surroundings, horizon: int = 8) -> bool:
         """Return whether the next ``horizon`` planned commands keep ``least_margin``, driven from ``pose``.
 
         A robot that stands nearer than that already must not get any nearer.
@@ -223,11 +231,17 @@ def blocked_ahead(path: NDArray[np.float64], pose: NDArray[np.float64], around: 
     return bool(_is_blocked(path, at, around.gap, around.closed, around.frame, margin))
 
 
+@njit(cache=True, nogil=True)
+def _predict(pose: NDArray[np.float64], moves: NDArray[np.float64], sequence: NDArray[np.int64]) -> NDArray[np.float64]:
+    here = pose.copy()
+    poses = np.empty((sequence.shape[0], 3))
+    for i in range(sequence.shape[0]):
+        move(here, moves[sequence[i]])
+        poses[i] = here
+    return poses
+
+
 def predict(pose: NDArray[np.float64], commands: Commands, sequence: NDArray[np.int64]) -> NDArray[np.float64]:
     """Return the poses (n, 3) after each of a sequence (n,) of commands, headings not wrapped."""
-    here = np.array(pose, np.float64)
-    poses = np.empty((len(sequence), 3))
-    for i, command in enumerate(sequence):
-        move(here, commands.moves[command])
-        poses[i] = here
+    poses: NDArray[np.float64] = _predict(np.asarray(pose, np.float64), commands.moves, sequence)
     return poses

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from lidarena.planning.heap import pop, push
 from lidarena.world.refusals import ConfigError
 
-_BIN = 0.05  # side of a position bin (m)
+_BIN = 0.07  # side of a position bin (m)
 _TURN_EDGE, _DRIVE_EDGE = 0.18, 0.1  # what one edge of the search turns (rad) or drives (m), at least one command
 _TWO_PI = 2.0 * math.pi
 
@@ -368,7 +368,7 @@ def steer(
     weight: float = 6.0,
     reach: float = 0.15,
     window: float = 2.5,
-    most_states: int = 10_000,
+    most_states: int = 6_000,
 ) -> NDArray[np.int64]:
     """Return the quickest sequence of commands that leads near a target, through places with clearance.
 

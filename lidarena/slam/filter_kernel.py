@@ -6,7 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from lidarena.slam.likelihood_field import register_points
+from lidarena.slam.likelihood_field import clear_fields, copy_field, register_points
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState
 from lidarena.slam.scan_matching import invert, match
@@ -133,14 +133,12 @@ def update(
         _rotate(local, prior[2], information)
         move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
         likelihood = match(
-            state.fields[w, i], maps.origin[w], resolution, chosen, parameters.matcher,
+            state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen, parameters.matcher,
             prior, information, state.particles[w, i], posterior,
         )  # fmt: skip
         state.log_weights[w, i] += parameters.likelihood_gain * likelihood
         _draw(state.particles[w, i], posterior, stream)
-        register_points(
-            state.fields[w, i], state.particles[w, i], maps.origin[w], resolution, count, points, state.box[w]
-        )
+        register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
         state.anchors[w, i] = state.particles[w, i]
     _normalise(w, state)
     _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
@@ -272,7 +270,6 @@ def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
             copies[i] += 1
             cursor += 1.0 / n
     copies[n - 1] += n - copies.sum()
-    r0, r1, c0, c1 = state.box[w]
     dead = 0
     for i in range(n):
         for _ in range(copies[i] - 1):
@@ -281,7 +278,7 @@ def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
             state.particles[w, dead] = state.particles[w, i]
             state.anchors[w, dead] = state.anchors[w, i]
             state.ancestors[w, dead] = i
-            state.fields[w, dead, r0:r1, c0:c1] = state.fields[w, i, r0:r1, c0:c1]
+            copy_field(state.fields, w, i, dead)
             dead += 1
     state.log_weights[w] = 0.0
     state.weights[w] = 1.0 / n
@@ -307,19 +304,16 @@ def start_filter(
     maps: OccupancyMaps,
 ) -> None:
     """Forget world w's past and start at a known pose (3,) with its first scan (beams,)."""
-    r0, r1, c0, c1 = state.box[w]
-    rows, columns = state.fields.shape[2:]
     beams = scan.shape[0]
     points = np.empty((beams, 5))
     count = extract_points(scan, directions, max_range, points, np.empty(beams, np.bool_))
-    state.box[w, 0], state.box[w, 1], state.box[w, 2], state.box[w, 3] = rows, 0, columns, 0
+    clear_fields(state.fields, w)
+    register_points(state.fields, w, 0, pose, maps.origin[w], resolution, points[:count])
     for i in range(parameters.particles):
-        if r1 > r0:
-            state.fields[w, i, r0:r1, c0:c1] = 0
+        copy_field(state.fields, w, 0, i)
         state.particles[w, i] = pose
         state.anchors[w, i] = pose
         state.ancestors[w, i] = i
-        register_points(state.fields[w, i], pose, maps.origin[w], resolution, count, points, state.box[w])
     state.log_weights[w] = 0.0
     state.motion[w] = 0.0
     state.motion_covariance[w] = 0.0

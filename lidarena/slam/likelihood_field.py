@@ -1,11 +1,15 @@
-"""A particle's map: the likelihood field of the walls it has seen, each wall remembering which way it faces.
+"""The particles' maps: likelihood fields of the walls they have seen, each wall remembering which way it faces.
 
 A cell holds exp(−d²/2σ²), d the distance of its centre to the nearest end point, in 12 bits, and in 4 bits the direction of
 that wall's normal. A point is compared only with walls that face its own way: the two faces of a thin wall, which lie
 closer together than the field is wide, never attract each other.
+
+Every particle has its own field, but particles that share a past share the tiles that have not changed since: a field is a
+table of tiles, copying a particle copies the table, and a shared tile is copied when it is first written to.
 """
 
 import math
+from typing import NamedTuple
 
 import numpy as np
 from numba import njit
@@ -19,10 +23,92 @@ SECTORS = 16
 """Directions that a wall may face."""
 ROUND_UP = 10.0 * SECTORS + 0.5
 """Added to a direction in sectors so that cutting off its fraction rounds it; whole turns do not count."""
+TILE_BITS = 4
+TILE = 1 << TILE_BITS
+"""Cells along a tile's side. A tile is stored with a rim of one cell that repeats its neighbours', so that the 3 × 3 cells
+around any of its own are at hand."""
 _REACH = 4
 """Cells from an end point up to which it is stamped; 0.2 m is 2.5 σ."""
 _FRESH = 0.75
 """A point is stamped where the field is lower: no wall is known within about 6 cm."""
+
+
+class Fields(NamedTuple):
+    """Likelihood fields of ``W`` worlds × ``N`` particles over grids of ``A`` × ``B`` tiles.
+
+    Attributes:
+        tiles: (W, capacity, TILE + 2, TILE + 2) uint16; tile 0 stays empty.
+        table: (W, N, A, B) which tile stands where.
+        references: (W, capacity) how many tables name a tile.
+        free: (W, capacity) stack of unused tiles.
+        free_count: (W,) height of the stack.
+    """
+
+    tiles: NDArray[np.uint16]
+    table: NDArray[np.int32]
+    references: NDArray[np.int32]
+    free: NDArray[np.int32]
+    free_count: NDArray[np.int64]
+
+
+def empty_fields(worlds: int, particles: int, rows: int, columns: int) -> Fields:
+    """Fields that know no wall, for grids of rows × columns cells; memory is taken up only as walls appear."""
+    a, b = -(-rows // TILE), -(-columns // TILE)
+    capacity = particles * a * b + 1
+    fields = Fields(
+        np.zeros((worlds, capacity, TILE + 2, TILE + 2), np.uint16),
+        np.zeros((worlds, particles, a, b), np.int32),
+        np.zeros((worlds, capacity), np.int32),
+        np.zeros((worlds, capacity), np.int32),
+        np.zeros(worlds, np.int64),
+    )
+    for w in range(worlds):
+        clear_fields(fields, w)
+    return fields
+
+
+@njit(cache=True, nogil=True)
+def clear_fields(fields: Fields, w: int) -> None:
+    """Forget every wall of world w."""
+    capacity = fields.free.shape[1]
+    fields.table[w] = 0
+    fields.references[w] = 0
+    for k in range(capacity - 1):
+        fields.free[w, k] = capacity - 1 - k  # low tiles first, so that memory is reused
+    fields.free_count[w] = capacity - 1
+
+
+@njit(cache=True, nogil=True)
+def copy_field(fields: Fields, w: int, source: int, target: int) -> None:
+    """Make particle ``target``'s field the same as ``source``'s by sharing its tiles."""
+    for a in range(fields.table.shape[2]):
+        for b in range(fields.table.shape[3]):
+            old, new = fields.table[w, target, a, b], fields.table[w, source, a, b]
+            if old != new:
+                if old != 0:
+                    fields.references[w, old] -= 1
+                    if fields.references[w, old] == 0:
+                        fields.free[w, fields.free_count[w]] = old
+                        fields.free_count[w] += 1
+                if new != 0:
+                    fields.references[w, new] += 1
+                fields.table[w, target, a, b] = new
+
+
+@njit(cache=True, nogil=True)
+def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> int:
+    """Index of the tile at (a, b) after making sure that this particle alone uses it."""
+    old = fields.table[w, particle, a, b]
+    if old != 0 and fields.references[w, old] == 1:
+        return np.int64(old)
+    fields.free_count[w] -= 1
+    new = fields.free[w, fields.free_count[w]]
+    if old != 0:
+        fields.references[w, old] -= 1
+    fields.tiles[w, new] = fields.tiles[w, old]
+    fields.references[w, new] = 1
+    fields.table[w, particle, a, b] = new
+    return np.int64(new)
 
 
 @njit(cache=True, nogil=True, forceinline=True)
@@ -32,69 +118,82 @@ def facing(cell: int, sector: int) -> float:
 
 
 @njit(cache=True, nogil=True)
-def field_at(field: NDArray[np.uint16], u: float, v: float, sector: int) -> float:
-    """Field (rows, columns) at column ``u``, row ``v`` (cell centres at integers) of walls that face ``sector``."""
-    if not (u >= 0.0 and v >= 0.0 and u < field.shape[1] - 2.0 and v < field.shape[0] - 2.0):
+def field_at(tiles: NDArray[np.uint16], table: NDArray[np.int32], u: float, v: float, sector: int) -> float:
+    """A field's value at column ``u``, row ``v`` (cell centres at integers) of walls that face ``sector``; bilinear.
+
+    Args:
+        tiles: (capacity, TILE + 2, TILE + 2) one world's tiles.
+        table: (A, B) one particle's table.
+        u: Column.
+        v: Row.
+        sector: As in ``facing``.
+    """
+    if not (u >= 0.0 and v >= 0.0 and u < table.shape[1] * TILE - 1.0 and v < table.shape[0] * TILE - 1.0):
         return 0.0
     column, row = np.int64(u), np.int64(v)
+    tile = tiles[table[row >> TILE_BITS, column >> TILE_BITS]]
+    c, r = (column & (TILE - 1)) + 1, (row & (TILE - 1)) + 1
     a, b = u - column, v - row
-    f00, f01 = facing(np.int64(field[row, column]), sector), facing(np.int64(field[row, column + 1]), sector)
-    f10, f11 = facing(np.int64(field[row + 1, column]), sector), facing(np.int64(field[row + 1, column + 1]), sector)
+    f00, f01 = facing(np.int64(tile[r, c]), sector), facing(np.int64(tile[r, c + 1]), sector)
+    f10, f11 = facing(np.int64(tile[r + 1, c]), sector), facing(np.int64(tile[r + 1, c + 1]), sector)
     low, high = f00 + a * (f01 - f00), f10 + a * (f11 - f10)
     return (low + b * (high - low)) / FULL
 
 
 @njit(cache=True, nogil=True)
 def register_points(
-    field: NDArray[np.uint16],
+    fields: Fields,
+    w: int,
+    particle: int,
     pose: NDArray[np.float64],
     origin: NDArray[np.float64],
     resolution: float,
-    count: int,
     points: NDArray[np.float64],
-    box: NDArray[np.int64],
 ) -> None:
-    """Stamp a scan's points, seen from a pose, into a field where it does not know them yet.
+    """Stamp a scan's points, seen from a pose, into a particle's field where it does not know them yet.
 
     Args:
-        field: (rows, columns).
+        fields: The fields.
+        w: World.
+        particle: Particle.
         pose: (3,) x, y, theta.
-        origin: (2,) lower-left corner of the field [m].
+        origin: (2,) lower-left corner of the grid [m].
         resolution: [m].
-        count: Number of points.
-        points: (≥ count, 5) as ``scan_points.extract_points`` gives them.
-        box: (4,) first row, last row + 1, first column, last column + 1 that hold anything; grown.
+        points: (n, 5) as ``scan_points.extract_points`` gives them.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
-    for i in range(count):
+    tiles, table = fields.tiles[w], fields.table[w, particle]
+    for i in range(points.shape[0]):
         x = pose[0] + cos * points[i, 0] - sin * points[i, 1]
         y = pose[1] + sin * points[i, 0] + cos * points[i, 1]
         u, v = (x - origin[0]) / resolution - 0.5, (y - origin[1]) / resolution - 0.5
         sector = np.int64(turn + points[i, 4])
-        if field_at(field, u, v, sector) < _FRESH:
-            _stamp(field, u, v, sector & (SECTORS - 1), resolution, box)
+        if field_at(tiles, table, u, v, sector) < _FRESH:
+            _stamp(fields, w, particle, u, v, sector & (SECTORS - 1), resolution)
 
 
 @njit(cache=True, nogil=True)
-def _stamp(
-    field: NDArray[np.uint16], u: float, v: float, sector: int, resolution: float, box: NDArray[np.int64]
-) -> None:
-    """Raise the cells around (u, v) to the Gaussian of their distance to it."""
+def _stamp(fields: Fields, w: int, particle: int, u: float, v: float, sector: int, resolution: float) -> None:
+    """Raise the cells around (u, v), also where a tile's rim repeats them, to the Gaussian of their distance to it."""
+    a_count, b_count = fields.table.shape[2], fields.table.shape[3]
     column, row = int(math.floor(u + 0.5)), int(math.floor(v + 0.5))
-    c0, c1 = max(column - _REACH, 0), min(column + _REACH + 1, field.shape[1])
-    r0, r1 = max(row - _REACH, 0), min(row + _REACH + 1, field.shape[0])
-    if c0 >= c1 or r0 >= r1:
+    if not (0 <= column < b_count * TILE and 0 <= row < a_count * TILE):
         return
+    c0, c1 = max(column - _REACH, 0), min(column + _REACH + 1, b_count * TILE)
+    r0, r1 = max(row - _REACH, 0), min(row + _REACH + 1, a_count * TILE)
     factor = -0.5 * (resolution / SIGMA) ** 2
-    across = np.empty(2 * _REACH + 1)
+    across, along = np.empty(2 * _REACH + 1), np.empty(2 * _REACH + 1)
     for c in range(c0, c1):
         across[c - c0] = math.exp(factor * (c - u) ** 2)
     for r in range(r0, r1):
-        along = FULL * math.exp(factor * (r - v) ** 2)
-        for c in range(c0, c1):
-            value = int(along * across[c - c0] + 0.5)
-            if value > field[r, c] >> 4:
-                field[r, c] = (value << 4) | sector
-    box[0], box[1] = min(box[0], r0), max(box[1], r1)
-    box[2], box[3] = min(box[2], c0), max(box[3], c1)
+        along[r - r0] = FULL * math.exp(factor * (r - v) ** 2)
+    for a in range(max((r0 - 1) >> TILE_BITS, 0), min((r1 >> TILE_BITS) + 1, a_count)):
+        for b in range(max((c0 - 1) >> TILE_BITS, 0), min((c1 >> TILE_BITS) + 1, b_count)):
+            tile = fields.tiles[w, _own_tile(fields, w, particle, a, b)]
+            top, left = a * TILE - 1, b * TILE - 1  # the cell that the tile's rim begins with
+            for r in range(max(r0, top), min(r1, top + TILE + 2)):
+                for c in range(max(c0, left), min(c1, left + TILE + 2)):
+                    value = int(along[r - r0] * across[c - c0] + 0.5)
+                    if value > tile[r - top, c - left] >> 4:
+                        tile[r - top, c - left] = (value << 4) | sector

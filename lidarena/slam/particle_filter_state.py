@@ -5,6 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.slam.likelihood_field import Fields, empty_fields
 from lidarena.slam.scan_matching import MatcherParameters
 from lidarena.world.odometry import OdometryNoise
 
@@ -30,7 +31,7 @@ class FilterParameters(NamedTuple):
     angular_update: float = 0.2
     temporal_update: float = 0.5
     resample_share: float = 0.5
-    likelihood_gain: float = 0.3
+    likelihood_gain: float = 0.1
     loyalty: float = 3.0
     history: int = 256
     noise: OdometryNoise = OdometryNoise()
@@ -41,8 +42,7 @@ class FilterState(NamedTuple):
     """Arrays of a batch of filters: ``W`` worlds, ``N`` particles, ``H`` scans of history, grids of ``R`` × ``C`` cells.
 
     Attributes:
-        fields: (W, N, R, C) uint16, the particles' likelihood fields.
-        box: (W, 4) rows and columns of the fields that hold anything.
+        fields: The particles' likelihood fields.
         particles: (W, N, 3) poses.
         anchors: (W, N, 3) poses at the last processed scan.
         log_weights: (W, N).
@@ -61,8 +61,7 @@ class FilterState(NamedTuple):
         criteria: (W, 3) D-optimality, entropy of the weights, N_eff.
     """
 
-    fields: NDArray[np.uint16]
-    box: NDArray[np.int64]
+    fields: Fields
     particles: NDArray[np.float64]
     anchors: NDArray[np.float64]
     log_weights: NDArray[np.float64]
@@ -85,8 +84,7 @@ def empty_state(worlds: int, rows: int, columns: int, beams: int, parameters: Fi
     """Allocate the arrays of ``worlds`` filters on grids of rows × columns cells."""
     n, h = parameters.particles, parameters.history
     return FilterState(
-        fields=np.zeros((worlds, n, rows, columns), np.uint16),
-        box=np.tile(np.array([rows, 0, columns, 0]), (worlds, 1)),
+        fields=empty_fields(worlds, n, rows, columns),
         particles=np.zeros((worlds, n, 3)),
         anchors=np.zeros((worlds, n, 3)),
         log_weights=np.zeros((worlds, n)),

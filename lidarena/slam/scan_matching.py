@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, facing
+from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing
 
 
 _OVER_RELAXATION = 1.4
@@ -32,12 +32,13 @@ class MatcherParameters(NamedTuple):
     points: int = 72
     iterations: int = 8
     tolerance: float = 1e-3
-    deviation: float = 0.04
+    deviation: float = 0.02
 
 
 @njit(cache=True, nogil=True)
 def match(
-    field: NDArray[np.uint16],
+    tiles: NDArray[np.uint16],
+    table: NDArray[np.int32],
     origin: NDArray[np.float64],
     resolution: float,
     points: NDArray[np.float64],
@@ -53,7 +54,8 @@ def match(
     improved proposal (Grisetti et al. 2007, eq. 13), up to a constant that all particles share.
 
     Args:
-        field: (rows, columns) likelihood field.
+        tiles: (capacity, TILE + 2, TILE + 2) the world's tiles, see ``likelihood_field.Fields``.
+        table: (A, B) the particle's table of them.
         origin: (2,) its lower-left corner [m].
         resolution: [m].
         points: (n, 5) the points to match, as ``scan_points.extract_points`` gives them.
@@ -66,7 +68,7 @@ def match(
     step, gradient = np.empty(3), np.empty(3)
     missed = quadratic = 0.0
     for _ in range(parameters.iterations):
-        missed = _linearise(field, origin[0], origin[1], resolution, points, pose, posterior, gradient)
+        missed = _linearise(tiles, table, origin[0], origin[1], resolution, points, pose, posterior, gradient)
         quadratic = _add_prior(parameters.deviation, prior, information, pose, posterior, gradient)
         solve(posterior, gradient, step)
         for k in range(3):
@@ -79,7 +81,8 @@ def match(
 
 @njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz", "arcp"})
 def _linearise(
-    field: NDArray[np.uint16],
+    tiles: NDArray[np.uint16],
+    table: NDArray[np.int32],
     x0: float,
     y0: float,
     resolution: float,
@@ -98,21 +101,23 @@ def _linearise(
     per_cell = 1.0 / resolution
     start_u, start_v = (pose[0] - x0) * per_cell, (pose[1] - y0) * per_cell
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
-    last_u, last_v = field.shape[1] - 1.0, field.shape[0] - 1.0
-    one = np.uint64(1)
+    end_u, end_v = float(table.shape[1] * TILE), float(table.shape[0] * TILE)
+    one, mask, bits = np.uint64(1), np.uint64(TILE - 1), np.uint64(TILE_BITS)
     hxx = hxy = hyy = hxt = hyt = htt = gx = gy = gt = missed = 0.0
     for i in range(points.shape[0]):
         px, py = cos * points[i, 0] - sin * points[i, 1], sin * points[i, 0] + cos * points[i, 1]
         u, v = start_u + px * per_cell, start_v + py * per_cell
-        if not (u >= 1.0 and v >= 1.0 and u < last_u and v < last_v):
+        if not (u >= 0.0 and v >= 0.0 and u < end_u and v < end_v):
             missed += 1.0
             continue
         c, r = np.uint64(np.int64(u)), np.uint64(np.int64(v))
         a, b = u - np.int64(u) - 0.5, v - np.int64(v) - 0.5  # from the cell's centre, ±½
         sector = np.int64(turn + points[i, 4])
-        low, low_slope = _spline(field[r - one, c - one], field[r - one, c], field[r - one, c + one], a, sector)
-        mid, mid_slope = _spline(field[r, c - one], field[r, c], field[r, c + one], a, sector)
-        high, high_slope = _spline(field[r + one, c - one], field[r + one, c], field[r + one, c + one], a, sector)
+        tile = tiles[np.uint64(table[r >> bits, c >> bits])]
+        c, r = (c & mask) + one, (r & mask) + one
+        low, low_slope = _spline(tile[r - one, c - one], tile[r - one, c], tile[r - one, c + one], a, sector)
+        mid, mid_slope = _spline(tile[r, c - one], tile[r, c], tile[r, c + one], a, sector)
+        high, high_slope = _spline(tile[r + one, c - one], tile[r + one, c], tile[r + one, c + one], a, sector)
         before, at, after = 0.5 * (0.5 - b) ** 2, 0.75 - b * b, 0.5 * (0.5 + b) ** 2
         f = (before * low + at * mid + after * high) * (1.0 / FULL)
         missed += 1.0 - f

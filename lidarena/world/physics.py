@@ -91,7 +91,9 @@ class Physics:
                 body.angular_velocity = rate
             space.step(dt)
         for r, body in enumerate(bodies):
-            self.poses[world, r] = (*body.position, math.remainder(body.angle, 2.0 * math.pi))
+            if abs(body.angle) > math.pi:  # a restored body starts from the wrapped heading: keep the same bits
+                body.angle = math.remainder(body.angle, 2.0 * math.pi)
+            self.poses[world, r] = (*body.position, body.angle)
 
     def _add_robot(self, space: pymunk.Space, pose: Pose) -> pymunk.Body:
         body = pymunk.Body(self.spec.mass, pymunk.moment_for_circle(self.spec.mass, 0.0, self.spec.radius))

@@ -1,7 +1,7 @@
 """A batch of tiny worlds with the manners of the real one; `tests.agents.fake_batch:fakebatch/Line-v0` registers it.
 
-A robot on the line [0, 1] should reach the right end without touching the left one. The batch is as nasty as is allowed:
-it writes every observation and reward into the same buffers.
+A robot on the line [0, 1] should reach the right end without touching the left one. The batch is as nasty as may
+be: it writes every observation and reward into the same buffers.
 """
 
 from typing import Any
@@ -15,7 +15,13 @@ from numpy.typing import NDArray
 
 from lidarena.world.refusals import ConfigError, suggest
 
-KEYWORDS = {"reward": "completeness", "observation": "line", "action": "discrete", "max_episode_steps": 20, "noise": 0.02}
+KEYWORDS = {
+    "reward": "completeness",
+    "observation": "line",
+    "action": "discrete",
+    "max_episode_steps": 20,
+    "noise": 0.02,
+}
 
 
 def single_observation_space(observation: str) -> spaces.Space[Any]:

@@ -1,0 +1,241 @@
+"""Active SLAM: a robot with a lidar explores an unknown world, its map and pose coming out of a particle filter."""
+
+from typing import Any, ClassVar
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.error import ResetNeeded
+from gymnasium.utils import seeding
+from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector.utils import batch_space
+from numpy.typing import NDArray
+
+from lidarena.envs.exploration_episodes import ExplorationEpisodes, Info, of_world
+from lidarena.envs.exploration_options import ExplorationOptions
+from lidarena.envs.exploration_picture import draw_exploration
+from lidarena.envs.generator_state import generator_from_words, generator_words
+from lidarena.world.refusals import ConfigError
+
+
+class ExplorationEnv(gym.Env[Any, Any]):
+    """Explore an unknown world and map it, without losing track of where you are.
+
+    ## Description
+
+    A TurtleBot3 Burger (a disc of 0.105 m radius with a differential drive) starts at a known pose in an unknown floor plan.
+    Its odometry drifts (gmapping's noise model); a 360-beam lidar of 3.5 m range and 1 cm noise feeds a Rao-Blackwellised
+    particle filter, which estimates pose and map. Reward and observation are those of DA-SLAM (Alcalde et al. 2022), whose worlds
+    are ``lidarena/Env1-v0`` … ``lidarena/Env4-v0``; ``lidarena/Exploration-v0`` takes any floor plan.
+
+    ## Action space
+
+    ``action="discrete"``, ``Discrete(3)``, each for one decision period of 0.2 s:
+
+    | Num | Action | speed [m/s] | turn rate [rad/s] |
+    |-----|---------|------|------|
+    | 0   | forward | 0.5  | 0    |
+    | 1   | left    | 0.05 | 0.3  |
+    | 2   | right   | 0.05 | -0.3 |
+
+    ``action="continuous"``, ``Box(-1, 1, (2,), float32)``: speed 0.25 (a₀ + 1) m/s and turn rate a₁ · 1.0 rad/s.
+
+    ## Observation space
+
+    ``observation="da_slam"``, ``Box(0, 1, (7,), float32)``:
+
+    | Num | Observation |
+    |-----|-------------|
+    | 0–4 | beams at 0, 45, 90, -45, -90 degrees, over 3.5 m |
+    | 5   | previous action / 2 (continuous: two numbers, each mapped to [0, 1]) |
+    | 6   | completeness; with ``reward="d_optimality"`` the entropy of the particles' weights / ln N |
+
+    ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
+
+    ## Rewards
+
+    - ``reward="completeness"`` (eq. 2): -100 on a collision, else the gain in map completeness in percentage points.
+      Completeness is the known share of K, the cells that the robot can come to know (``measure_coverage``).
+    - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's covariance.
+
+    ``info["reward_terms"]`` holds the terms by name.
+
+    ## Starting state
+
+    The map's own start, ``start=(x, y, theta)``, or ``start="random"``: any reachable place 0.25 m from the walls, any heading.
+    The filter knows the start: its frame is the floor plan's.
+
+    ## Episode end
+
+    - Termination: some beam is shorter than 0.12 m (collision), or completeness reached ``stop_at``.
+    - Truncation: after ``max_episode_steps`` (1000) steps.
+
+    ## Info
+
+    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat], ``n_eff``,
+    ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``odometry_pose`` (3,), ``reward_terms``; ``map``
+    (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (a view: later steps change it), ``resolution`` [m], ``origin`` (2,).
+    What depends on the truth is ``completeness`` (and with it the reward), ``collision`` (a bumper) and, only with
+    ``expose_truth=True``, ``truth``: ``pose`` and ``path_length``.
+
+    ## Arguments
+
+    See ``ExplorationOptions``.
+
+    ## References
+
+    Alcalde et al., DA-SLAM: Deep Active SLAM based on Deep Reinforcement Learning, LARS 2022. Grisetti, Stachniss, Burgard,
+    Improved techniques for grid mapping with Rao-Blackwellized particle filters, T-RO 2007.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 5}
+
+    def __init__(self, **keywords: Any) -> None:
+        """Make one world; the keywords are those of ``ExplorationOptions``.
+
+        Raises:
+            ConfigError: A keyword that is unknown or out of range.
+            MapError: A floor plan or start that cannot be used.
+        """
+        options = ExplorationOptions.checked(keywords)
+        self._episodes = ExplorationEpisodes(1, options)
+        self.render_mode = options.render_mode
+        self.observation_space = self._episodes.single_observation_space
+        self.action_space = self._episodes.single_action_space
+        self._running = False
+
+    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Info]:
+        """Begin an episode."""
+        super().reset(seed=seed)
+        self._episodes.reset([0], [self.np_random])
+        self._running = True
+        return self._episodes.observer.pick(self._episodes.observe(), 0), of_world(self._episodes.infos(), 0)
+
+    def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
+        """Act for one decision period.
+
+        Raises:
+            ActionError: An action that is NaN, out of range, or of the wrong shape or type.
+            ResetNeeded: The environment was not reset, or its episode has ended.
+        """
+        if not self._running:
+            raise ResetNeeded("step() needs a running episode; call reset() first, and again after an episode has ended")
+        rewards, terminated, truncated = self._episodes.step([action])
+        self._running = not (terminated[0] or truncated[0])
+        observation = self._episodes.observer.pick(self._episodes.observe(), 0)
+        info = of_world(self._episodes.infos(), 0)
+        return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+
+    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+        """Picture (height, width, 3) of the truth and of what the filter believes; None without ``render_mode``.
+
+        Raises:
+            ResetNeeded: The environment was not reset.
+        """
+        if self._episodes.recorder is None:
+            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+            return None
+        if not self._episodes.recorder.begun(0):
+            raise ResetNeeded("render() needs an episode; call reset() first")
+        return draw_exploration(self._episodes.core, self._episodes.recorder, 0)
+
+
+class BatchedExploration(VectorEnv[Any, Any, Any]):
+    """``num_envs`` exploration worlds in one step; world ``i`` equals ``ExplorationEnv`` with seed ``seed + i`` to the bit.
+
+    A world that ends begins its next episode in the same step (``AutoresetMode.SAME_STEP``): ``infos["final_obs"]`` and
+    ``infos["final_info"]`` hold the last observation and info of the old one. Spaces, rewards and keywords: ``ExplorationEnv``.
+
+    Args:
+        num_envs: Number of worlds.
+        keywords: Those of ``ExplorationOptions``.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
+        "render_modes": ["rgb_array"],
+        "render_fps": 5,
+        "autoreset_mode": AutoresetMode.SAME_STEP,
+    }
+
+    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+        """Make the worlds; raises like ``ExplorationEnv``."""
+        if not isinstance(num_envs, int) or num_envs < 1:
+            raise ConfigError(f"num_envs = {num_envs!r} must be a whole number of at least 1")
+        options = ExplorationOptions.checked(keywords)
+        self.num_envs = num_envs
+        self.render_mode = options.render_mode
+        self._episodes = ExplorationEpisodes(num_envs, options)
+        self.single_observation_space = self._episodes.single_observation_space
+        self.single_action_space = self._episodes.single_action_space
+        self.observation_space = batch_space(self.single_observation_space, num_envs)
+        self.action_space = batch_space(self.single_action_space, num_envs)
+        self._generators: list[np.random.Generator] = []
+
+    def reset(
+        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, Info]:
+        """Begin an episode in every world; a single seed ``s`` gives world ``i`` the seed ``s + i``."""
+        seeds = [None if seed is None else seed + i for i in range(self.num_envs)] if not isinstance(seed, list) else seed
+        if len(seeds) != self.num_envs:
+            raise ConfigError(f"{len(seeds)} seeds were given for {self.num_envs} worlds; one for each is needed")
+        if not self._generators:
+            self._generators = [seeding.np_random(one)[0] for one in seeds]
+        for world, one in enumerate(seeds):
+            if one is not None:
+                self._generators[world] = seeding.np_random(one)[0]
+        everyone = np.ones(self.num_envs, np.bool_)
+        self._episodes.reset(range(self.num_envs), self._generators)
+        return self._episodes.observe(), masked(self._episodes.infos(), everyone)
+
+    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], Info]:
+        """Act in every world for one decision period; raises like ``ExplorationEnv.step``."""
+        if not self._generators:
+            raise ResetNeeded("step() needs running episodes; call reset() first")
+        rewards, terminated, truncated = self._episodes.step(actions)
+        observations = self._episodes.observe()
+        done = terminated | truncated
+        if not done.any():
+            return observations, rewards, terminated, truncated, masked(self._episodes.infos(), ~done | done)
+        last = self._episodes.infos()
+        last.pop("map")  # a view on maps that are about to be forgotten
+        final_obs = np.full(self.num_envs, None, dtype=object)
+        for world in np.flatnonzero(done):
+            final_obs[world] = self._copied(observations, int(world))
+        self._episodes.reset(np.flatnonzero(done).tolist(), self._generators)
+        fresh = self._episodes.observe()
+        for world in np.flatnonzero(done):
+            self._episodes.observer.put(observations, int(world), fresh)
+        infos = masked(self._episodes.infos(), np.ones_like(done))
+        infos |= {"final_obs": final_obs, "_final_obs": done.copy()}
+        infos |= {"final_info": masked(last, done), "_final_info": done.copy()}
+        return observations, rewards, terminated, truncated, infos
+
+    def _copied(self, observations: Any, world: int) -> Any:
+        one = self._episodes.observer.pick(observations, world)
+        return {name: array.copy() for name, array in one.items()} if isinstance(one, dict) else one.copy()
+
+    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
+        """One picture a world; None without ``render_mode``."""
+        recorder = self._episodes.recorder
+        if recorder is None:
+            return None
+        return tuple(draw_exploration(self._episodes.core, recorder, world) for world in range(self.num_envs))
+
+    def get_state(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
+        arrays = {name: array.copy() for name, array in self._episodes.arrays().items()}
+        arrays["generators"] = np.stack([generator_words(rng) for rng in self._generators])
+        return arrays
+
+    def set_state(self, state: dict[str, NDArray[Any]]) -> None:
+        """Continue where ``get_state`` of a batch with the same keywords and size was called."""
+        self._generators = [generator_from_words(words) for words in state["generators"]]
+        self._episodes.load_arrays(state)
+
+
+def masked(info: Info, mask: NDArray[np.bool_]) -> Info:
+    """Gymnasium's form of a batch's infos: beside every array one that says for which worlds it holds."""
+    out: Info = {}
+    for name, value in info.items():
+        out[name] = masked(value, mask) if isinstance(value, dict) else value
+        out[f"_{name}"] = mask
+    return out

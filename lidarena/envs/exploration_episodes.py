@@ -1,0 +1,161 @@
+"""Episodes in a batch of exploration worlds: rewards, endings, observations and infos; shared by batch and single environment."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.compilation import announced_compilation
+from lidarena.envs.drive_actions import action_space, commands_of
+from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
+from lidarena.envs.exploration_observation import MapObserver, Observer, PaperObserver
+from lidarena.envs.exploration_options import ExplorationOptions
+from lidarena.envs.exploration_picture import PathRecorder
+
+CRASH_REWARD = -100.0
+"""The paper's r_crashed."""
+Info = dict[str, Any]
+
+
+class ExplorationEpisodes:
+    """Runs episodes in ``worlds`` worlds; whoever owns it decides when a world is reset.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        core: The worlds.
+        single_observation_space: Of one world.
+        single_action_space: Of one world.
+        recorder: Paths for the picture, None unless the worlds are drawn.
+    """
+
+    def __init__(self, worlds: int, options: ExplorationOptions) -> None:
+        self.options = options
+        self.core = ExplorationCore(worlds, options)
+        self.single_action_space: gym.Space[Any] = action_space(options.action)
+        parts = 1 if options.action == "discrete" else 2
+        uncertain = options.reward == "d_optimality"
+        self.observer: Observer = (
+            PaperObserver(parts, uncertain)
+            if options.observation == "da_slam"
+            else MapObserver(parts, self.core.beam.beams)
+        )
+        self.single_observation_space = self.observer.space
+        self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
+        self._steps = np.zeros(worlds, np.int64)
+        self._previous = np.zeros((worlds, parts))
+        self._completeness = np.zeros(worlds)
+        self._terms: dict[str, NDArray[np.float64]] = {}
+        self._compiled = False
+
+    def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
+        """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
+        with announced_compilation():
+            for world in worlds:
+                self.core.reset_world(world, generators[world])
+                self._steps[world] = 0
+                self._previous[world] = 0.0
+                if self.recorder is not None:
+                    self.recorder.begin(world, self.core)
+        self._completeness = self.core.completeness
+        self._terms = {name: np.zeros(self.core.worlds) for name in (self.options.reward, "collision")}
+
+    def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Act in every world; returns rewards, terminated and truncated, each (worlds,).
+
+        Raises:
+            ActionError: See ``drive_actions.commands_of``.
+        """
+        commands = commands_of(self.options.action, actions, self.core.worlds)
+        if self._compiled:
+            self.core.step(commands)
+        else:
+            with announced_compilation():
+                self.core.step(commands)
+            self._compiled = True
+        self._steps += 1
+        self._remember(np.asarray(actions, dtype=np.float64))
+        rewards = self._reward()
+        terminated = self.core.collision.copy()
+        if self.options.stop_at is not None:
+            terminated |= self._completeness >= self.options.stop_at
+        limit = self.options.max_episode_steps
+        truncated = ~terminated & (self._steps >= limit) if limit is not None else np.zeros_like(terminated)
+        if self.recorder is not None:
+            self.recorder.record(self.core)
+        return rewards, terminated, truncated
+
+    def _remember(self, actions: NDArray[np.float64]) -> None:
+        if self.options.action == "discrete":
+            self._previous[:, 0] = actions / 2.0
+        else:
+            self._previous[:] = 0.5 * (actions + 1.0)
+
+    def _reward(self) -> NDArray[np.float64]:
+        """The paper's eq. 2 or 3: a crash, or else the gain in percentage points, or 1 + tanh(η / D)."""
+        before, self._completeness = self._completeness, self.core.completeness
+        alive = ~self.core.collision
+        if self.options.reward == "completeness":
+            gain = 100.0 * (self._completeness - before)
+        else:
+            gain = 1.0 + np.tanh(self.options.eta / self.core.criteria[:, 0])
+        self._terms = {self.options.reward: gain * alive, "collision": CRASH_REWARD * ~alive}
+        return self._terms[self.options.reward] + self._terms["collision"]
+
+    def observe(self) -> Any:
+        """Fresh observations of all worlds."""
+        return self.observer.observe(self.core, self._previous)
+
+    def infos(self) -> Info:
+        """What every step tells, as arrays over worlds; ``map`` is a read-only view that later steps change."""
+        core = self.core
+        view = core.maps.occupancy[:]
+        view.flags.writeable = False
+        info: Info = {
+            "completeness": self._completeness.copy(),
+            "pose": core.estimate.copy(),
+            "covariance": core.covariance.copy(),
+            "d_optimality": core.criteria[:, 0].copy(),
+            "entropy": core.criteria[:, 1].copy(),
+            "n_eff": core.criteria[:, 2].copy(),
+            "path_length": core.path_length.copy(),
+            "time": self._steps * self.options.decision_period,
+            "collision": core.collision.copy(),
+            "odometry_pose": core.dead_reckoning[:, 0].copy(),
+            "reward_terms": dict(self._terms),
+            "map": view,
+            "resolution": np.full(core.worlds, RESOLUTION),
+            "origin": core.maps.origin.copy(),
+        }
+        if self.options.expose_truth:
+            truth = {"pose": core.physics.poses[:, 0].copy(), "path_length": core.true_path_length.copy()}
+            info["truth"] = truth
+        return info
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, by name, except the generators."""
+        own = {"steps": self._steps, "previous": self._previous, "completeness": self._completeness}
+        return own | self.core.arrays()
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of other episodes with the same options."""
+        self._steps[:], self._previous[:] = saved["steps"], saved["previous"]
+        self._completeness = saved["completeness"].copy()
+        self._terms = {name: np.zeros(self.core.worlds) for name in (self.options.reward, "collision")}
+        self.core.load_arrays(saved)
+
+
+def of_world(info: Info, world: int) -> Info:
+    """One world's info out of a batch's; scalars become Python numbers."""
+    single: Info = {}
+    for name, value in info.items():
+        if isinstance(value, dict):
+            single[name] = of_world(value, world)
+        else:
+            item = value[world]
+            single[name] = item.item() if item.ndim == 0 else item
+    return single

@@ -1,0 +1,131 @@
+"""Keywords of the exploration environments, checked at the border."""
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from lidarena.world.floorplan import Floorplan, Pose
+from lidarena.world.refusals import ConfigError, MapError, suggest
+
+ETA = 1.0
+"""η of the paper's uncertainty reward, as printed."""
+
+MapSpec = str | Floorplan
+_CHOICES = {
+    "reward": ("completeness", "d_optimality"),
+    "observation": ("da_slam", "map"),
+    "action": ("discrete", "continuous"),
+    "slam": ("rbpf", "truth"),
+    "render_mode": (None, "rgb_array"),
+}
+_RANGES = {
+    "particles": (1, 1000),
+    "lidar_noise": (0.0, 1.0),
+    "odometry_noise": (0.0, 100.0),
+    "decision_period": (0.01, 2.0),
+    "eta": (1e-12, 1e6),
+}
+
+
+@dataclass(frozen=True)
+class ExplorationOptions:
+    """Keywords of ``lidarena/Exploration-v0`` and ``lidarena/Env1-v0`` … ``Env4-v0``.
+
+    Attributes:
+        map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them from which
+            every reset draws one.
+        reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
+        observation: ``"da_slam"`` (the paper's) or ``"map"`` (a dictionary with an egocentric picture of the map).
+        action: ``"discrete"`` (the paper's three) or ``"continuous"``.
+        slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.
+        particles: Of the filter.
+        lidar_noise: Standard deviation of a range [m].
+        odometry_noise: Factor on gmapping's motion noise; 0 is perfect odometry.
+        decision_period: Time between decisions [s].
+        max_episode_steps: Steps after which an episode is truncated; None never.
+        start: (x, y, theta) in the map's frame, ``"random"``, or None for the map's own.
+        stop_at: Completeness that ends an episode as done; None never.
+        expose_truth: Give ``info["truth"]``, for evaluation.
+        render_mode: None or ``"rgb_array"``.
+        eta: η of the uncertainty reward [m^(4/3) rad^(2/3)].
+    """
+
+    map: MapSpec | Sequence[MapSpec] = "willow_lobby"
+    reward: str = "completeness"
+    observation: str = "da_slam"
+    action: str = "discrete"
+    slam: str = "rbpf"
+    particles: int = 30
+    lidar_noise: float = 0.01
+    odometry_noise: float = 1.0
+    decision_period: float = 0.2
+    max_episode_steps: int | None = 1000
+    start: Pose | str | None = None
+    stop_at: float | None = 0.995
+    expose_truth: bool = False
+    render_mode: str | None = None
+    eta: float = ETA
+
+    @classmethod
+    def checked(cls, keywords: Mapping[str, Any]) -> "ExplorationOptions":
+        """Check keywords and fill in the defaults.
+
+        Raises:
+            ConfigError: An unknown keyword, or a value out of range or of the wrong type.
+            MapError: A start that is neither a pose, ``"random"`` nor None.
+        """
+        names = [field.name for field in fields(cls)]
+        for name in keywords:
+            if name not in names:
+                raise ConfigError(f"unknown keyword {name!r} of an exploration environment{suggest(name, names)}")
+        options = cls(**keywords)
+        for name, allowed in _CHOICES.items():
+            _check_choice(name, getattr(options, name), allowed)
+        for name, (low, high) in _RANGES.items():
+            _check_range(name, getattr(options, name), low, high)
+        options._check_rest()
+        return options
+
+    def _check_rest(self) -> None:
+        if self.max_episode_steps is not None:
+            _check_range("max_episode_steps", self.max_episode_steps, 1, 10**9)
+            _check_whole("max_episode_steps", self.max_episode_steps)
+        if self.stop_at is not None:
+            _check_range("stop_at", self.stop_at, 0.0, 1.0)
+        _check_whole("particles", self.particles)
+        if not isinstance(self.expose_truth, bool):
+            raise ConfigError(f"expose_truth = {self.expose_truth!r} must be true or false")
+        if isinstance(self.start, str) and self.start != "random":
+            raise MapError(f"start = {self.start!r} must be a pose (x, y, theta), 'random' or None")
+        if self.start is not None and not isinstance(self.start, str):
+            _check_pose(self.start)
+        if not isinstance(self.map, str | Floorplan) and (not isinstance(self.map, Sequence) or not len(self.map)):
+            raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file, or a list of them")
+
+    @property
+    def maps(self) -> list[MapSpec]:
+        """The floor plans to draw from."""
+        return [self.map] if isinstance(self.map, str | Floorplan) else list(self.map)
+
+
+def _check_choice(name: str, value: Any, allowed: Sequence[str | None]) -> None:
+    if value not in allowed:
+        words = [word for word in allowed if word is not None]
+        raise ConfigError(f"{name} = {value!r} is not known{suggest(str(value), words)}")
+
+
+def _check_range(name: str, value: Any, low: float, high: float) -> None:
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or not low <= value <= high:
+        raise ConfigError(f"{name} = {value!r} is out of range; a number from {low:g} to {high:g} is allowed")
+
+
+def _check_whole(name: str, value: Any) -> None:
+    if not isinstance(value, int):
+        raise ConfigError(f"{name} = {value!r} must be a whole number")
+
+
+def _check_pose(start: Any) -> None:
+    if not isinstance(start, Sequence) or len(start) != 3 or not all(isinstance(v, int | float) for v in start):
+        raise MapError(f"start = {start!r} must be a pose (x, y, theta), 'random' or None")

@@ -1,0 +1,35 @@
+"""Running compiled kernels on disjoint ranges of worlds at once.
+
+The kernels release the interpreter lock, so plain threads serve; unlike an OpenMP region they may be started in a process
+that was forked, they compile in half the time, and a batch of one calls its kernel directly. The number of threads is
+numba's (``numba.set_num_threads``, ``NUMBA_NUM_THREADS``).
+"""
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import lru_cache
+
+import numba
+
+_CHUNKS_PER_THREAD = 2
+"""Worlds differ in cost; smaller ranges keep the threads busy to the end."""
+
+
+def for_ranges(count: int, work: Callable[[int, int], None]) -> None:
+    """Call ``work(first, last)`` for ranges that together cover 0 … count - 1, on numba's number of threads."""
+    threads = min(int(numba.get_num_threads()), count)
+    if threads <= 1:
+        work(0, count)
+        return
+    chunks = min(threads * _CHUNKS_PER_THREAD, count)
+    borders = [count * k // chunks for k in range(chunks + 1)]
+    executor = _executor(os.getpid(), threads)
+    for future in [executor.submit(work, a, b) for a, b in zip(borders, borders[1:], strict=False)]:
+        future.result()
+
+
+@lru_cache(maxsize=4)
+def _executor(process: int, threads: int) -> ThreadPoolExecutor:
+    """One pool a process: threads do not survive a fork."""
+    return ThreadPoolExecutor(threads, thread_name_prefix=f"lidarena-{process}")

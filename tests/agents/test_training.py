@@ -1,0 +1,258 @@
+import ast
+import json
+import os
+import random
+import signal
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import torch
+from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
+
+import lidarena.agents
+from lidarena.agents import TrainingStopped, atomic_files, load, load_config, train
+from lidarena.agents.training_config import TrainingConfig
+from lidarena.world.refusals import ConfigError
+from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
+
+SUFFIXES = {".yaml", ".json", ".safetensors", ".csv", ".npz"}
+
+
+def test_a_run_folder_holds_everything(tmp_path: Path) -> None:
+    folder = train(small(tmp_path / "run"), progress=False)
+    assert folder == tmp_path / "run"
+    names = {path.name for path in folder.iterdir()}
+    assert {"config.yaml", "policy.json", "policy.safetensors", "progress.csv", "checkpoints"} < names
+    assert load_config(folder / "config.yaml", TrainingConfig) == small(tmp_path / "run")
+    policy = load(folder)
+    policy.reset(seed=0)
+    assert policy.act(np.zeros(3, np.float32), {}) in (0, 1, 2)
+    assert policy.training["steps"] == 512 and policy.training["seed"] == 0 and policy.training["episodes"] > 0
+    assert [path.name for path in sorted((folder / "checkpoints").iterdir())] == [
+        "step_0000000000384",
+        "step_0000000000512",
+    ]
+
+
+def test_the_learning_curve_has_a_row_an_update(tmp_path: Path) -> None:
+    folder = train(small(tmp_path / "run", "normalize_reward=true"), progress=False)
+    rows = curve(folder)
+    assert [int(row["step"]) for row in rows] == list(range(64, 513, 64))
+    last = rows[-1]
+    assert 0 <= float(last["completeness"]) <= 1 and 0 <= float(last["collision_rate"]) <= 1
+    assert -200 < float(last["episode_return"]) < 100 and 1 <= float(last["episode_length"]) <= 20
+    assert all(last[key] for key in ("value_loss", "policy_loss", "entropy_loss", "approx_kl", "learning_rate"))
+    events = EventAccumulator(str(folder)).Reload()
+    steps = [event.step for event in events.Scalars("rollout/completeness")]
+    assert steps == [int(row["step"]) for row in rows if row["completeness"]]
+    assert {"rollout/ep_rew_mean", "rollout/collision_rate", "time/steps_per_second", "train/value_loss"} <= set(
+        events.Tags()["scalars"]
+    )
+
+
+def test_training_teaches(tmp_path: Path) -> None:
+    overrides = ("num_envs=16", "total_steps=4096", "ppo={n_steps: 16, batch_size: 128, learning_rate: 1e-2}")
+    folder = train(
+        small(tmp_path / "run", "checkpoint_every=4096", "normalize_reward=true", *overrides), progress=False
+    )
+    policy = load(folder)
+    observations = np.random.default_rng(0).uniform(0.2, 0.9, (50, 3)).astype(np.float32)
+    actions = [policy.act(observation) for observation in observations]
+    assert np.mean(np.array(actions) == 1) > 0.8
+
+
+def test_the_same_seed_gives_the_same_bits(tmp_path: Path) -> None:
+    runs = [train(small(tmp_path / name, "total_steps=128", *more), progress=False) for name, *more in [["a"], ["b"]]]
+    other = train(small(tmp_path / "c", "total_steps=128", "seed=1"), progress=False)
+    assert equal(weights(runs[0]), weights(runs[1])) and curve(runs[0]) == curve(runs[1])
+    assert not equal(weights(runs[0]), weights(other))
+
+
+def test_settings_reach_ppo(tmp_path: Path) -> None:
+    overrides = ("total_steps=64", "ppo.learning_rate={start: 1e-2}", "policy.activation=relu", "torch_threads=2")
+    before = torch.get_num_threads()
+    folder = train(small(tmp_path / "run", *overrides), progress=False)
+    assert torch.get_num_threads() == before
+    assert float(curve(folder)[-1]["learning_rate"]) == 0  # the line ends with the last update
+    assert json.loads((folder / "policy.json").read_text())["architecture"] == {
+        "class": "MlpPolicy",
+        "net_arch": [8],
+        "activation": "relu",
+    }
+
+
+def test_dict_observations_are_trained_on(tmp_path: Path) -> None:
+    folder = train(small(tmp_path / "run", "total_steps=64", "env.keywords={observation: map}"), progress=False)
+    assert json.loads((folder / "policy.json").read_text())["architecture"]["class"] == "MultiInputPolicy"
+    observation = {"map": np.zeros((1, 36, 36), np.uint8), "state": np.zeros(3, np.float32)}
+    assert load(folder).act(observation) in (0, 1, 2)
+
+
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("policy=CnnPolicy", "'policy.class' is 'CnnPolicy'.*need 'MlpPolicy'"),
+        ("policy=MultiInputPolicy", "need 'MlpPolicy'"),
+        ("env.keywords={observation: map}", "need 'MultiInputPolicy'"),
+        ("env.keywords={rewrd: x}", "did you mean 'reward'"),
+        ("env.id=fakebatch/Nowhere-v0", "no environment 'fakebatch/Nowhere-v0'"),
+    ],
+)
+def test_what_cannot_be_trained_leaves_no_folder(tmp_path: Path, override: str, message: str) -> None:
+    with pytest.raises(ConfigError, match=message):
+        train(small(tmp_path / "run", "policy=MlpPolicy", override), progress=False)
+    assert list(tmp_path.iterdir()) == []
+
+
+@pytest.mark.skipif(torch.cuda.is_available(), reason="there is a CUDA device")
+def test_a_missing_device_is_refused(tmp_path: Path) -> None:
+    with pytest.raises(ConfigError, match="'device' is 'cuda'"):
+        train(small(tmp_path / "run", "device=cuda"), progress=False)
+
+
+def test_a_training_needs_a_configuration() -> None:
+    with pytest.raises(ConfigError, match="needs a configuration"):
+        train()
+
+
+def test_a_folder_that_is_taken_is_left_alone(tmp_path: Path) -> None:
+    config = small(tmp_path / "run", "total_steps=64")
+    first = train(config, progress=False)
+    before = {path: path.stat().st_mtime_ns for path in first.rglob("*")}
+    assert train(config, progress=False) == tmp_path / "run-2"
+    assert train(config, progress=False) == tmp_path / "run-3"
+    assert load_config(tmp_path / "run-2" / "config.yaml", TrainingConfig).out == str(tmp_path / "run-2")
+    with pytest.raises(ConfigError, match=r"already holds files; choose another one, or go on with --resume"):
+        train(config, progress=False, exact_out=True)
+    assert {path: path.stat().st_mtime_ns for path in first.rglob("*")} == before
+
+
+def test_an_empty_folder_is_taken(tmp_path: Path) -> None:
+    (tmp_path / "run").mkdir()
+    assert train(small(tmp_path / "run", "total_steps=64"), progress=False, exact_out=True) == tmp_path / "run"
+
+
+def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    with pytest.raises(ConfigError, match="cannot make the run folder"):
+        train(small(tmp_path / "file" / "run", "total_steps=64"), progress=False)
+
+
+def test_nothing_in_a_run_folder_is_a_pickle(tmp_path: Path) -> None:
+    folder = train(small(tmp_path / "run", "total_steps=128", "normalize_reward=true"), progress=False)
+    for file in (path for path in folder.rglob("*") if path.is_file()):
+        assert file.suffix in SUFFIXES or file.name.startswith("events.out.tfevents"), file
+        assert file.read_bytes()[:1] != b"\x80"
+        if file.suffix == ".npz":
+            with np.load(file, allow_pickle=False) as arrays:
+                assert all(not arrays[key].dtype.hasobject for key in arrays.files)
+
+
+def test_the_room_itself_never_imports_pickle() -> None:
+    for file in Path(lidarena.agents.__file__).parent.glob("*.py"):
+        for node in ast.walk(ast.parse(file.read_text())):
+            names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else []
+            names += [str(node.module)] if isinstance(node, ast.ImportFrom) else []
+            assert not {"pickle", "cloudpickle", "joblib", "dill"} & {name.split(".")[0] for name in names}, file
+            assert not (isinstance(node, ast.Attribute) and ast.unparse(node) in ("torch.load", "torch.save")), file
+
+
+def test_weights_that_leave_the_finite_numbers_do_not_replace_good_ones(tmp_path: Path, monkeypatch: Any) -> None:
+    from stable_baselines3 import PPO
+
+    learn = PPO.train
+
+    def explode(self: PPO) -> None:
+        learn(self)
+        if self.num_timesteps >= 192:
+            with torch.no_grad():
+                self.policy.value_net.weight.fill_(float("inf"))
+
+    monkeypatch.setattr(PPO, "train", explode)
+    with pytest.raises(ConfigError, match=r"failed at step 192: the weights are no longer finite.*learning_rate"):
+        train(small(tmp_path / "run"), progress=False)
+    assert load(tmp_path / "run").training["steps"] == 128
+
+
+def test_a_full_disk_leaves_the_last_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    write_folder = atomic_files.write_folder
+    calls: list[Any] = []
+
+    def full(folder: Path, fill: Any) -> Path:
+        calls.append(folder)
+        if len(calls) > 1:
+            raise OSError(28, "No space left on device")
+        return write_folder(folder, fill)
+
+    monkeypatch.setattr("lidarena.agents.checkpoint.write_folder", full)
+    with pytest.raises(OSError, match="No space left"):
+        train(small(tmp_path / "run"), progress=False)
+    monkeypatch.undo()
+    folder = train(resume=tmp_path / "run", progress=False)
+    assert equal(weights(folder), weights(train(small(tmp_path / "straight"), progress=False)))
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_ctrl_c_ends_the_training_after_the_update(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], number: int
+) -> None:
+    before = signal.getsignal(number)
+    press_ctrl_c(monkeypatch, at_step=200, number=number)
+    with pytest.raises(TrainingStopped, match=r"stopped at step 256; .*train.py --resume") as stopped:
+        train(small(tmp_path / "run", "checkpoint_every=10_000"))
+    assert "once more to stop at once" in capsys.readouterr().err
+    assert (stopped.value.folder, stopped.value.step) == (tmp_path / "run", 256)
+    assert load(tmp_path / "run").training["steps"] == 256
+    assert [path.name for path in (tmp_path / "run" / "checkpoints").iterdir()] == ["step_0000000000256"]
+    assert signal.getsignal(number) is before
+
+
+def test_ctrl_c_twice_ends_it_at_once_and_keeps_the_policy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    press_ctrl_c(monkeypatch, at_step=300, times=2)
+    with pytest.raises(TrainingStopped, match="to go on from step 256"):
+        train(small(tmp_path / "run"))
+    assert load(tmp_path / "run").training["steps"] == 304
+    press_ctrl_c(monkeypatch, at_step=10, times=2)
+    with pytest.raises(TrainingStopped, match="it had no checkpoint yet"):
+        train(small(tmp_path / "early"))
+
+
+def test_training_works_outside_the_main_thread(tmp_path: Path) -> None:
+    from concurrent.futures import ThreadPoolExecutor
+
+    with ThreadPoolExecutor(1) as pool:
+        assert pool.submit(train, small(tmp_path / "run", "total_steps=64"), None, False).result() == tmp_path / "run"
+
+
+def test_progress_tells_where_the_run_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = train(small(tmp_path / "run", "total_steps=128"))
+    output = capsys.readouterr().out
+    assert str(folder) in output and "128 of 128 steps (100%)" in output and "completeness" in output
+
+
+def test_silence(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    train(small(tmp_path / "run", "total_steps=64"), progress=False)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_importing_the_room_does_not_import_torch() -> None:
+    import subprocess
+
+    code = "import sys, lidarena.agents; from lidarena.agents import load_config; assert 'torch' not in sys.modules"
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])
+    with pytest.raises(AttributeError, match="no attribute 'nonsense'"):
+        _ = lidarena.agents.nonsense
+    assert "train" in dir(lidarena.agents)
+
+
+def test_the_temporary_folder_stays_clean(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    import tempfile
+
+    (tmp_path / "tmp").mkdir()
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "tmp"))
+    train(small(tmp_path / "run", "total_steps=64"), progress=False)
+    assert os.listdir(tmp_path / "tmp") == []
+    random.seed(0)

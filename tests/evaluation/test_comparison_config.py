@@ -1,0 +1,75 @@
+"""What a comparison file may say, and the sentence for each thing that it may not."""
+
+from pathlib import Path
+
+import pytest
+
+from lidarena.agents.yaml_config import check_config, dump_config, load_config
+from lidarena.evaluation.comparison_config import ComparisonConfig, file_name
+from lidarena.world.refusals import ConfigError
+
+MINIMAL = {"envs": ["lidarena/Env1-v0"], "policies": ["random"]}
+
+
+def test_plain_names_stand_for_entries() -> None:
+    config = check_config(MINIMAL, ComparisonConfig)
+    assert config.envs[0].id == "lidarena/Env1-v0" and config.envs[0].label == "Env1-v0"
+    assert config.policies[0].name == config.policies[0].title == "random"
+    assert list(config.seeds) == list(range(20))
+    assert config.videos is False and config.workers is None
+
+
+def test_overrides_reach_into_lists() -> None:
+    config = check_config(MINIMAL, ComparisonConfig, ["episodes=3", "seed=5", "policies.0=frontier", "videos=gif"])
+    assert list(config.seeds) == [5, 6, 7]
+    assert config.policies[0].name == "frontier" and config.videos == "gif"
+
+
+def test_a_written_config_reads_back_equal(tmp_path: Path) -> None:
+    config = check_config({**MINIMAL, "out": "results/mine", "videos": "mp4"}, ComparisonConfig)
+    assert load_config(dump_config(config, tmp_path / "c.yaml"), ComparisonConfig) == config
+
+
+@pytest.mark.parametrize(
+    ("label", "file"), [("Env-2", "Env-2"), ("a/b c:d", "a-b-c-d"), ("../..", "-.."), ("..", "-"), ("größer", "größer")]
+)
+def test_labels_become_file_names(label: str, file: str) -> None:
+    assert file_name(label) == file
+
+
+@pytest.mark.parametrize("name", ["quick", "exploration"])
+def test_the_shipped_files_are_right(name: str) -> None:
+    config = load_config(Path(__file__).parents[2] / f"configs/compare/{name}.yaml", ComparisonConfig)
+    assert config.folder == Path("results") / name
+    assert {"random", "frontier"} <= {policy.name for policy in config.policies}
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"episodes": 0}, "'episodes' is 0, but it should be greater than or equal to 1"),
+        ({"episodes": 2.5}, "'episodes' is 2.5"),
+        ({"episodes": True}, "should be a number, not true or false"),
+        ({"episdoes": 3}, "'episdoes' is not a key; did you mean 'episodes'"),
+        ({"envs": []}, "'envs'"),
+        ({"policies": []}, "'policies'"),
+        ({"seed": -1}, "'seed' is -1"),
+        ({"workers": 0}, "'workers' is 0"),
+        ({"videos": "avi"}, "gif, mp4"),
+        ({"out": ""}, "'out'"),
+        ({"policies": ["random", "random"]}, "are called 'random' or nearly so; give each its own 'label'"),
+        ({"envs": ["a/Env1-v0", "b/Env1-v0"]}, "two environments are called 'Env1-v0'"),
+        ({"policies": ["random", {"name": "x", "label": "Random"}]}, "two policies are called 'random' or nearly so"),
+        ({"envs": [{"id": "lidarena/Env1-v0", "keyword": {}}]}, "did you mean 'keywords'"),
+        ({"envs": [{"id": "e", "keywords": {"expose_truth": True}}]}, "'expose_truth' of 'e' is set by the evaluation"),
+        ({"policies": [{"name": "p", "keywords": {"render_mode": "human"}}]}, "'render_mode' of policy 'p'"),
+        ({"policies": [{"name": "p", "path": "runs/p", "options": {"a": 1}}]}, "a trained agent takes no options"),
+        ({"policies": [{"path": "runs/p"}]}, "'policies.0.name' is missing"),
+        ({"envs": [3]}, "'envs.0' is 3"),
+    ],
+)
+def test_refusals(change: dict, sentence: str) -> None:
+    with pytest.raises(ConfigError) as caught:
+        check_config({**MINIMAL, **change}, ComparisonConfig, origin="file.yaml")
+    assert sentence in str(caught.value)
+    assert "\n" not in str(caught.value)

@@ -1,0 +1,139 @@
+"""One episode: what the policy sees, what is measured, and why it ends."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lidarena.evaluation.episodes import policy_seed, run_episode, without_truth
+from lidarena.evaluation.measures import BY_NAME
+from lidarena.evaluation.participants import make_env
+from tests.evaluation.fake_world import Crasher, Driver
+
+CORRIDOR = "tests.evaluation.fake_world:fake/Corridor-v0"
+
+
+class Spy(Driver):
+    """Remembers what it was shown."""
+
+    def act(self, observation: Any, info: dict[str, Any]) -> int:
+        self.seen = [*getattr(self, "seen", []), set(info)]
+        return super().act(observation, info)
+
+
+def test_the_truth_is_kept_from_the_policy() -> None:
+    env = make_env(CORRIDOR, {})
+    _, info = env.reset(seed=0)
+    assert "truth" in info  # there is something to keep
+    spy = Spy(env)
+    run_episode(env, spy, seed=0)
+    assert len(spy.seen) > 30
+    assert all("truth" not in keys and "pose" in keys for keys in spy.seen)
+    assert without_truth({"truth": 1, "pose": 2}) == {"pose": 2}
+
+
+def test_measures_of_a_known_episode() -> None:
+    env = make_env(CORRIDOR, {"slip": 0.0})
+    episode = run_episode(env, Driver(env, back=0.0), seed=3)
+    steps = 35  # from 0.3 m in steps of 0.1 m to 99.5% of 3.8 m
+    values = episode.measures
+    assert set(values) == set(BY_NAME)
+    assert episode.seed == 3 and episode.ending == "success"
+    assert (values["success"], values["collision"], values["steps"]) == (1.0, 0.0, steps)
+    assert values["completeness"] == pytest.approx(1.0)
+    assert values["path_length"] == pytest.approx(0.1 * steps)  # the truth's, not the info's own 0
+    assert values["time"] == pytest.approx(0.2 * steps)
+    assert values["trajectory_error"] == pytest.approx(0.0)
+    assert values["odometry_error"] == pytest.approx(np.mean(0.1 * np.arange(steps + 1)))
+    assert values["d_optimality"] == pytest.approx(np.exp(np.mean(np.log(1e-4 * np.arange(2, steps + 2)))))
+    assert values["entropy"] == 1.5 and np.isnan(values["entropy_gmapping"])
+    assert values["return"] == pytest.approx(100 * (1 - 0.3 / 3.8))
+    assert 0 < values["decision_time"] < 0.01
+
+
+def test_the_environment_may_reuse_its_arrays() -> None:
+    env = make_env(CORRIDOR, {})
+    trace = run_episode(env, Driver(env), seed=1, keep_trace=True).trace
+    assert trace is not None
+    assert len(np.unique(trace.true[:, 0])) > 20
+    assert trace.true.shape == trace.estimated.shape
+    assert np.abs(trace.true - trace.estimated).max() > 0
+    assert trace.grid is not None and trace.grid.flags.owndata
+    assert trace.edges.shape == (8, 4) and trace.circles.shape == (1, 3)
+
+
+def test_progress_has_an_entry_per_step_and_one_for_the_reset() -> None:
+    env = make_env(CORRIDOR, {})
+    episode = run_episode(env, Driver(env), seed=1)
+    assert episode.progress.shape == (episode.measures["steps"] + 1, 2)
+    assert (np.diff(episode.progress[:, 0]) > 0).all() and (np.diff(episode.progress[:, 1]) >= 0).all()
+    assert episode.trace is None
+
+
+def test_a_collision_is_no_success() -> None:
+    env = make_env(CORRIDOR, {})
+    episode = run_episode(env, Crasher(env), seed=0)
+    assert episode.ending == "collision"
+    assert (episode.measures["success"], episode.measures["collision"], episode.measures["steps"]) == (0.0, 1.0, 3.0)
+
+
+def test_a_policy_may_declare_itself_finished() -> None:
+    env = make_env(CORRIDOR, {})
+    episode = run_episode(env, Driver(env, finish_at=11), seed=0)
+    assert episode.ending == "policy finished"
+    assert episode.measures["steps"] == 10 and episode.measures["success"] == 0.0
+
+
+def test_a_policy_may_be_finished_at_once() -> None:
+    env = make_env(CORRIDOR, {})
+    values = run_episode(env, Driver(env, finish_at=1), seed=0).measures
+    assert values["steps"] == 0 and values["return"] == 0.0
+    assert values["d_optimality"] == pytest.approx(1e-4)
+
+
+@pytest.mark.parametrize(("keywords", "steps"), [({"max_episode_steps": 7}, 7), ({}, 120)])
+def test_time_runs_out(keywords: dict[str, int], steps: int) -> None:
+    env = make_env(CORRIDOR, keywords)
+    episode = run_episode(env, Driver(env, back=0.5), seed=0)
+    assert episode.ending == "out of time" and episode.measures["steps"] == steps
+
+
+def test_steps_can_be_limited() -> None:
+    env = make_env(CORRIDOR, {})
+    assert run_episode(env, Driver(env), seed=0, max_steps=4).measures["steps"] == 4
+
+
+def test_an_environment_without_truth_leaves_out_what_needs_it() -> None:
+    env = make_env(CORRIDOR, {"truth": False})
+    episode = run_episode(env, Driver(env), seed=0, keep_trace=True)
+    assert np.isnan([episode.measures[name] for name in ("path_length", "trajectory_error", "odometry_error")]).all()
+    assert episode.trace is not None and episode.trace.true.shape == (0, 2)
+
+
+def test_the_same_seed_gives_the_same_episode_and_another_one_another() -> None:
+    def measured(seed: int) -> dict[str, float]:
+        env = make_env(CORRIDOR, {})
+        values = run_episode(env, Driver(env), seed=seed).measures
+        return {name: value for name, value in values.items() if name not in ("decision_time", "entropy_gmapping")}
+
+    assert measured(4) == measured(4) != measured(5)
+
+
+def test_policy_and_environment_draw_from_different_streams() -> None:
+    env = make_env(CORRIDOR, {})
+    driver = Driver(env)
+    run_episode(env, driver, seed=8, max_steps=1)
+    assert driver.seed == policy_seed(8) != 8
+    drawn = np.random.default_rng(policy_seed(8)).standard_normal(8)
+    assert not np.allclose(drawn, np.random.default_rng(8).standard_normal(8))
+    assert len({policy_seed(seed) for seed in range(1000)}) == 1000
+
+
+def test_the_camera_sees_every_state() -> None:
+    env = make_env(CORRIDOR, {}, "rgb_array")
+    frames: list[Any] = []
+    episode = run_episode(env, Driver(env), seed=0, film=lambda env: frames.append(env.render()))
+    assert len(frames) == episode.measures["steps"] + 1
+    finished: list[int] = []
+    run_episode(env, Driver(env, finish_at=3), seed=0, film=lambda env: finished.append(1))
+    assert len(finished) == 3

@@ -1,0 +1,103 @@
+"""Pictures exist, are not blank, and say what they should."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
+from lidarena.evaluation.pictures import Cell, caption, draw_pictures, overview, progress, progress_band, single
+from tests.evaluation.rows import episode_of, trace_of
+
+VALUES = {"completeness": 0.97, "path_length": 31.24, "time": 105.2}
+
+
+def cell_of(policy: str, env: str = "Env-1", ending: str = "success", speed: float = 0.1, **shape: bool) -> Cell:
+    first = episode_of(0, VALUES, ending, speed, trace_of(**shape))
+    others = [episode_of(k, VALUES, ending, speed * (1 + 0.05 * k)) for k in (1, 2)]
+    return Cell(EnvEntry(id=env), PolicyEntry(name=policy), [first, *others])
+
+
+def test_all_pictures_are_drawn(tmp_path: Path) -> None:
+    cells = [[cell_of("random", env, "collision", 0.03), cell_of("frontier", env)] for env in ("Env-1", "Env-2")]
+    paths = draw_pictures(cells, tmp_path / "pictures")
+    assert [path.relative_to(tmp_path / "pictures").as_posix() for path in paths] == [
+        "overview.png",
+        "progress.png",
+        "Env-1/random.png",
+        "Env-1/frontier.png",
+        "Env-2/random.png",
+        "Env-2/frontier.png",
+    ]
+    for path in paths:
+        with Image.open(path) as image:
+            assert image.width > 400 and image.height > 300
+            assert image.convert("L").entropy() > 0.5
+
+
+def test_without_traces_there_are_no_maps(tmp_path: Path) -> None:
+    bare = Cell(EnvEntry(id="Env-1"), PolicyEntry(name="random"), [episode_of(0, VALUES)])
+    assert [path.name for path in draw_pictures([[bare]], tmp_path)] == ["progress.png"]
+    without_time = episode_of(0, VALUES)
+    without_time.progress[:] = np.nan
+    nothing = Cell(EnvEntry(id="Env-1"), PolicyEntry(name="random"), [without_time])
+    assert draw_pictures([[nothing]], tmp_path) == []
+
+
+@pytest.mark.parametrize("shape", [{"walls": False}, {"grid": False}, {"grid": False, "walls": False}])
+def test_maps_may_lack_walls_or_cells(shape: dict[str, bool]) -> None:
+    figure = single(cell_of("random", **shape))
+    figure.canvas.draw()
+    low, high = figure.axes[0].get_xlim()
+    assert low < 1 and high > 3
+
+
+def test_a_picture_explains_itself() -> None:
+    figure = single(cell_of("frontier", ending="collision"))
+    axes = figure.axes[0]
+    assert axes.get_title() == "frontier in Env-1, seed 0\nexplored 97% in 31.2 m, 105 s: collision"
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("x (m)", "y (m)")
+    assert axes.get_aspect() == 1.0
+    labels = {text.get_text() for text in figure.legends[0].get_texts()}
+    assert {"true path", "path as SLAM believes it", "true walls", "mapped as free"} <= labels
+    assert {"start", "end", "collision"} <= labels
+
+
+def test_the_map_lies_where_the_walls_are() -> None:
+    image = single(cell_of("frontier")).axes[0].get_images()[0]
+    assert image.get_extent() == [0, 4.0, 0, 4.0] or tuple(image.get_extent()) == (0, 4.0, 0, 4.0)
+    assert image.origin == "lower"
+
+
+def test_the_overview_has_a_panel_each_and_equal_limits_in_a_row() -> None:
+    figure = overview([[cell_of(name, env) for name in ("random", "frontier")] for env in ("Env-1", "Env-2", "Env-3")])
+    assert len(figure.axes) == 6
+    assert figure.axes[0].get_xlim() == figure.axes[1].get_xlim()
+    assert "Env-2" in figure.axes[2].get_ylabel()
+
+
+def test_progress_keeps_the_last_value_and_its_band_contains_the_mean() -> None:
+    episodes = [episode_of(k, VALUES, speed=speed) for k, speed in enumerate((0.02, 0.05, 0.1))]
+    times = np.array([0.0, 5.0, 10.0, 99.0])
+    mean, low, high = progress_band(episodes, times)
+    np.testing.assert_allclose(mean, np.mean([0.02, 0.05, 0.1]) * np.minimum(times, 10), atol=1e-6)
+    assert (low <= mean + 1e-12).all() and (mean <= high + 1e-12).all() and low[2] < high[2]
+
+
+def test_progress_has_a_panel_per_environment() -> None:
+    figure = progress([[cell_of("random", env)] for env in ("Env-1", "Env-2", "Env-3", "Env-4")])
+    assert [axes.get_title() for axes in figure.axes][:4] == [f"Env-{k} (3 episodes each)" for k in (1, 2, 3, 4)]
+
+
+@pytest.mark.parametrize(
+    ("values", "text"),
+    [
+        (VALUES, "explored 97% in 31.2 m, 105 s: success"),
+        ({"completeness": np.nan, "path_length": 3.0, "time": np.nan}, "3.0 m: success"),
+        ({"completeness": 0.5, "path_length": np.nan, "time": np.nan}, "explored 50%: success"),
+        ({"completeness": np.nan, "path_length": np.nan, "time": np.nan}, "success"),
+    ],
+)
+def test_captions(values: dict[str, float], text: str) -> None:
+    assert caption(episode_of(0, values)) == text
