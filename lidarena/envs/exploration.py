@@ -73,7 +73,8 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat], ``n_eff``,
     ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``odometry_pose`` (3,), ``reward_terms``; ``map``
-    (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (a view: later steps change it), ``resolution`` [m], ``origin`` (2,).
+    (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change), ``resolution`` [m],
+    ``origin`` (2,).
     What depends on the truth is ``completeness`` (and with it the reward), ``collision`` (a bumper) and, only with
     ``expose_truth=True``, ``truth``: ``pose`` and ``path_length``.
 
@@ -108,7 +109,7 @@ class ExplorationEnv(gym.Env[Any, Any]):
         super().reset(seed=seed)
         self._episodes.reset([0], [self.np_random])
         self._running = True
-        return self._episodes.observer.pick(self._episodes.observe(), 0), of_world(self._episodes.infos(), 0)
+        return self._episodes.observer.pick(self._episodes.observe(), 0), self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
         """Act for one decision period.
@@ -122,8 +123,14 @@ class ExplorationEnv(gym.Env[Any, Any]):
         rewards, terminated, truncated = self._episodes.step([action])
         self._running = not (terminated[0] or truncated[0])
         observation = self._episodes.observer.pick(self._episodes.observe(), 0)
+        return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info()
+
+    def _info(self) -> Info:
+        """The only world's info; its map is a copy, since Gymnasium asks that no two steps share memory."""
         info = of_world(self._episodes.infos(), 0)
-        return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), info
+        info["map"] = info["map"].copy()
+        info["map"].flags.writeable = False
+        return info
 
     def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
         """Picture (height, width, 3) of the truth and of what the filter believes; None without ``render_mode``.

@@ -112,7 +112,7 @@ class ExplorationCore:
         slam = self.filters or self.mapper
         assert slam is not None
         origin = self._coverage[plan].origin
-        slam.start(world, plan, origin, self.physics.poses[world, 0].copy(), self.scans[world, 0])
+        slam.start(world, plan, origin, self.physics.poses[world, 0].copy(), self.scans[:, 0])
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
         if self.options.start != "random":

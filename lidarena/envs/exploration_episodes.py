@@ -103,7 +103,7 @@ class ExplorationEpisodes:
             gain = 100.0 * (self._completeness - before)
         else:
             gain = 1.0 + np.tanh(self.options.eta / self.core.criteria[:, 0])
-        self._terms = {self.options.reward: gain * alive, "collision": CRASH_REWARD * ~alive}
+        self._terms = {self.options.reward: np.where(alive, gain, 0.0), "collision": np.where(alive, 0.0, CRASH_REWARD)}
         return self._terms[self.options.reward] + self._terms["collision"]
 
     def observe(self) -> Any:

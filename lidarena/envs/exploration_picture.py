@@ -116,7 +116,7 @@ def _headline(core: ExplorationCore, world: int, name: str) -> str:
 
 def _compose(left: NDArray[np.uint8], right: NDArray[np.uint8], headline: str) -> NDArray[np.uint8]:
     height, width = left.shape[:2]
-    total = max(2 * width + _GAP, 620)
+    total = max(2 * width + 3 * _GAP, 640)
     image = np.full((height + _HEADER + _FOOTER, total, 3), 255, np.uint8)
     margin = (total - 2 * width - _GAP) // 2
     image[_HEADER : _HEADER + height, margin : margin + width] = left

@@ -6,6 +6,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.slam.copying import copy_matrix, copy_vector
 from lidarena.slam.likelihood_field import clear_fields, copy_field, register_points
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState
@@ -36,6 +37,9 @@ def step_filters(
 ) -> None:
     """Advance the filters of worlds first … last - 1 by one odometry reading and, where due, one scan.
 
+    A filter that has processed no scan yet starts with this one. (Starting is not a kernel of its own: both would be compiled
+    with the same callees, and that is what takes the time.)
+
     Args:
         first: First world.
         last: World after the last.
@@ -51,6 +55,10 @@ def step_filters(
         maps: The published maps.
     """
     for w in range(first, last):
+        if state.updates[w] == 0:
+            _begin(w, resolution, max_range, directions, parameters, scans[w], state, maps)
+            _summarise(w, state)
+            continue
         predict(w, duration, readings[w], parameters, streams[w], state)
         due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
         if due or state.since[w, 2] > parameters.temporal_update:
@@ -123,13 +131,14 @@ def update(
     count = extract_points(scan, directions, max_range, points, flat)
     chosen = _choose(points, flat, count, parameters.matcher.points)
     local = np.empty((3, 3))
-    covariance = state.motion_covariance[w].copy()
+    covariance = np.empty((3, 3))
+    copy_matrix(covariance, state.motion_covariance[w])
     for k in range(3):
         covariance[k, k] += _LEAST_VARIANCE
     invert(covariance, local)
     prior, information, posterior = np.empty(3), np.empty((3, 3)), np.empty((3, 3))
     for i in range(parameters.particles):
-        prior[:] = state.anchors[w, i]
+        copy_vector(prior, state.anchors[w, i])
         _rotate(local, prior[2], information)
         move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
         likelihood = match(
@@ -139,23 +148,25 @@ def update(
         state.log_weights[w, i] += parameters.likelihood_gain * likelihood
         _draw(state.particles[w, i], posterior, stream)
         register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
-        state.anchors[w, i] = state.particles[w, i]
+        copy_vector(state.anchors[w, i], state.particles[w, i])
     _normalise(w, state)
     _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
     if state.criteria[w, 2] < parameters.resample_share * parameters.particles:
         _resample(w, stream, state)
-    state.motion[w] = 0.0
-    state.motion_covariance[w] = 0.0
-    state.since[w] = 0.0
+    _forget_motion(w, state)
 
 
 @njit(cache=True, nogil=True)
 def _choose(points: NDArray[np.float64], flat: NDArray[np.bool_], count: int, most: int) -> NDArray[np.float64]:
     """At most ``most`` points with a normal, evenly over the scan (n, 5)."""
-    usable = np.flatnonzero(flat[:count])
-    chosen = np.empty((min(most, usable.shape[0]), 5))
+    usable, total = np.empty(count, np.int64), 0
+    for i in range(count):
+        if flat[i]:
+            usable[total] = i
+            total += 1
+    chosen = np.empty((min(most, total), 5))
     for i in range(chosen.shape[0]):
-        chosen[i] = points[usable[i * usable.shape[0] // chosen.shape[0]]]
+        copy_vector(chosen[i], points[usable[i * total // chosen.shape[0]]])
     return chosen
 
 
@@ -192,8 +203,9 @@ def _draw(pose: NDArray[np.float64], information: NDArray[np.float64], stream: N
 def _normalise(w: int, state: FilterState) -> None:
     """Normalise world w's weights and compute their entropy and N_eff."""
     n = state.log_weights.shape[1]
-    top = state.log_weights[w].max()
-    total = 0.0
+    top, total = -math.inf, 0.0
+    for i in range(n):
+        top = max(top, state.log_weights[w, i])
     for i in range(n):
         state.log_weights[w, i] -= top
         state.weights[w, i] = math.exp(state.log_weights[w, i])
@@ -221,8 +233,8 @@ def _publish(
     history = parameters.history
     now = state.updates[w]
     slot = now % history
-    state.node_poses[w, slot] = state.particles[w]
-    state.node_scans[w, slot] = scan
+    copy_matrix(state.node_poses[w, slot], state.particles[w])
+    copy_vector(state.node_scans[w, slot], scan)
     for i in range(parameters.particles):
         state.node_parents[w, slot, i] = state.ancestors[w, i]
         state.ancestors[w, i] = i
@@ -245,7 +257,10 @@ def _publish(
 @njit(cache=True, nogil=True)
 def _best_particle(w: int, slot: int, now: int, parameters: FilterParameters, state: FilterState) -> int:
     """The likeliest particle, or the likeliest descendant of the published one unless it is ``loyalty`` times less likely."""
-    best = int(np.argmax(state.weights[w]))
+    best = 0
+    for i in range(parameters.particles):
+        if state.weights[w, i] > state.weights[w, best]:
+            best = i
     if now == 0:
         return best
     shown = state.published[w, (now - 1) % parameters.history]
@@ -263,20 +278,19 @@ def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
     """Systematic resampling; survivors stay where they are, their copies overwrite the dead."""
     n = state.weights.shape[1]
     copies = np.zeros(n, np.int64)
-    cursor, total = uniform(stream) / n, 0.0
+    offset, total, drawn = uniform(stream), 0.0, 0
     for i in range(n):
         total += state.weights[w, i]
-        while cursor < total and copies.sum() < n:
+        while drawn < n and (i == n - 1 or drawn + offset < total * n):
             copies[i] += 1
-            cursor += 1.0 / n
-    copies[n - 1] += n - copies.sum()
+            drawn += 1
     dead = 0
     for i in range(n):
         for _ in range(copies[i] - 1):
             while copies[dead] > 0:
                 dead += 1
-            state.particles[w, dead] = state.particles[w, i]
-            state.anchors[w, dead] = state.anchors[w, i]
+            copy_vector(state.particles[w, dead], state.particles[w, i])
+            copy_vector(state.anchors[w, dead], state.anchors[w, i])
             state.ancestors[w, dead] = i
             copy_field(state.fields, w, i, dead)
             dead += 1
@@ -292,33 +306,37 @@ def _summarise(w: int, state: FilterState) -> None:
 
 
 @njit(cache=True, nogil=True)
-def start_filter(
+def _begin(
     w: int,
     resolution: float,
     max_range: float,
     directions: NDArray[np.float64],
     parameters: FilterParameters,
-    pose: NDArray[np.float64],
     scan: NDArray[np.float32],
     state: FilterState,
     maps: OccupancyMaps,
 ) -> None:
-    """Forget world w's past and start at a known pose (3,) with its first scan (beams,)."""
-    beams = scan.shape[0]
-    points = np.empty((beams, 5))
-    count = extract_points(scan, directions, max_range, points, np.empty(beams, np.bool_))
+    """Start world w's filter with its first scan (beams,), all particles where they were put."""
+    points = np.empty((scan.shape[0], 5))
+    count = extract_points(scan, directions, max_range, points, np.empty(scan.shape[0], np.bool_))
     clear_fields(state.fields, w)
-    register_points(state.fields, w, 0, pose, maps.origin[w], resolution, points[:count])
     for i in range(parameters.particles):
-        copy_field(state.fields, w, 0, i)
-        state.particles[w, i] = pose
-        state.anchors[w, i] = pose
+        if i == 0:
+            register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
+        else:
+            copy_field(state.fields, w, 0, i)
+        copy_vector(state.anchors[w, i], state.particles[w, i])
         state.ancestors[w, i] = i
-    state.log_weights[w] = 0.0
-    state.motion[w] = 0.0
-    state.motion_covariance[w] = 0.0
-    state.since[w] = 0.0
-    state.updates[w] = 0
+        state.log_weights[w, i] = 0.0
+    _forget_motion(w, state)
     _normalise(w, state)
     _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
-    _summarise(w, state)
+
+
+@njit(cache=True, nogil=True)
+def _forget_motion(w: int, state: FilterState) -> None:
+    """Begin to add up the odometry anew after a scan."""
+    for k in range(3):
+        state.motion[w, k] = state.since[w, k] = 0.0
+        for j in range(3):
+            state.motion_covariance[w, k, j] = 0.0

@@ -46,12 +46,12 @@ class KnownPoseMapper:
         plan: int,
         origin: NDArray[np.float64],
         pose: NDArray[np.float64],
-        scan: NDArray[np.float32],
+        scans: NDArray[np.float32],
     ) -> None:
-        """Start one map anew with the scan (beams,) taken at ``pose`` (3,)."""
+        """Start one map anew with its row of ``scans`` (W, beams), taken at ``pose`` (3,)."""
         clear_map(self.maps, world, plan, origin)
         self.since[world] = 0.0
-        trace_scan(self.maps, world, self._resolution, pose, scan, self._directions, self._max_range, 1)
+        trace_scan(self.maps, world, self._resolution, pose, scans[world], self._directions, self._max_range, 1)
 
     def step(
         self,

@@ -15,6 +15,8 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.slam.copying import copy_matrix
+
 SIGMA = 0.08
 """Width of the field [m]: wide enough to pull in a pose that is 10 cm off, narrow enough for 5 cm cells."""
 FULL = 4095
@@ -105,7 +107,7 @@ def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> int:
     new = fields.free[w, fields.free_count[w]]
     if old != 0:
         fields.references[w, old] -= 1
-    fields.tiles[w, new] = fields.tiles[w, old]
+    copy_matrix(fields.tiles[w, new], fields.tiles[w, old])
     fields.references[w, new] = 1
     fields.table[w, particle, a, b] = new
     return np.int64(new)

@@ -8,7 +8,7 @@ by how well scan and odometry agree with its map, and the set is resampled only 
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.slam.filter_kernel import start_filter, step_filters
+from lidarena.slam.filter_kernel import step_filters
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState, empty_state
 
@@ -51,7 +51,7 @@ class ParticleFilters:
         plan: int,
         origin: NDArray[np.float64],
         pose: NDArray[np.float64],
-        scan: NDArray[np.float32],
+        scans: NDArray[np.float32],
     ) -> None:
         """Start one filter anew.
 
@@ -60,12 +60,12 @@ class ParticleFilters:
             plan: Which of ``wanted`` it covers.
             origin: (2,) lower-left corner of its grids [m].
             pose: (3,) where the robot stands; the frame of everything that follows.
-            scan: (beams,) its first scan [m].
+            scans: (W, beams) scans of all worlds, of which this one's is its first [m].
         """
         clear_map(self.maps, world, plan, origin)
-        start_filter(
-            world, self.resolution, self._max_range, self._directions, self.parameters, pose, scan, self.state, self.maps
-        )
+        self.state.particles[world] = pose
+        self.state.updates[world] = 0
+        self.step(world, world + 1, 0.0, self.state.motion, scans, np.zeros((0, 4), np.uint64))
 
     def step(
         self,
