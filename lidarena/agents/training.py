@@ -206,6 +206,10 @@ class _BetweenUpdates(BaseCallback):
             raise _Stopped
         self._first = False
 
+    def _on_rollout_end(self) -> None:
+        # Numba sets OpenMP's number of threads, and so PyTorch's, when its thread pool starts: at the worlds' first step.
+        torch.set_num_threads(self._run.config.torch_threads)
+
     def _on_step(self) -> bool:
         self._display.update(self.num_timesteps)
         return True

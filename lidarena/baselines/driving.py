@@ -169,6 +169,11 @@ class Driver:
             return True
         return not self._is_clear or self._is_path_blocked()
 
+    @property
+    def is_cornered(self) -> bool:
+        """Whether the robot has no room to turn round where it is; nothing can be said of a goal then."""
+        return not self._follower.can_loiter(self.pose, self._around)
+
     def action(self) -> Any:
         """Return the next action: the next planned command if map and beams say that it is safe, else a turn."""
         if self._follower.is_clear(self.pose, self._around):  # commands may be newer than what sense() checked

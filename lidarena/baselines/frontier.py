@@ -1,20 +1,21 @@
 """Frontier exploration: ROS's explore_lite on the SLAM map, driven with the environment's own actions."""
 
 import math
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
 
 from lidarena.baselines.driving import Driver, Terrain
+from lidarena.baselines.goals import Goal, GoalLedger
 from lidarena.baselines.registry import register
 from lidarena.baselines.robot import Robot
 from lidarena.planning.frontiers import Frontier, find_frontiers, nearest_cell
 from lidarena.world.refusals import ConfigError
 
-_SAME_GOAL = 0.25  # goals nearer to each other than this, in x and in y, are one (m); explore_lite's five cells
 _FAR_GOAL = 3.0  # a frontier whose nearest reachable cell is farther away than this is behind something (m)
 _SAME_FRONTIER = 1.0  # a frontier with a cell so near to the goal is the one that was driven to (m)
-_TRIES = 3
+_BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a place (m)
 
 
 @register("frontier", family="exploration")
@@ -25,9 +26,12 @@ class FrontierPolicy:
     second, on arrival, and when something new stands in the way; it is given up for good after ``progress_timeout``
     without progress, if nothing leads there, or if the frontier is still there ``arrival_patience`` after arrival.
 
-    explore_lite stops when only frontiers below ``min_frontier_size`` are left, which leaves pockets behind furniture
-    and in corners unseen. Here a second pass then fetches those down to ``last_frontier_size``; set it to
-    ``min_frontier_size`` for explore_lite's own behaviour.
+    Two things differ from explore_lite, each with an option that takes it back. explore_lite stops when only frontiers
+    below ``min_frontier_size`` are left, and so leaves pockets behind furniture and in corners unseen: here a second
+    pass then fetches those down to ``last_frontier_size``, the nearest first (``last_frontier_size=0.5`` for
+    explore_lite). And explore_lite turns round whenever another frontier has become a cell larger, which costs a robot
+    that needs ten seconds for turning round dear: here another one must be better by ``persistence`` (0 for
+    explore_lite).
 
     Attributes:
         finished: Whether no frontier is left; the robot then keeps turning to the left.
@@ -79,8 +83,8 @@ class FrontierPolicy:
             if not 0.0 <= value < math.inf:
                 raise ConfigError(f"{name} = {value}, allowed are finite numbers >= 0")
         self._sizes = sorted({min_frontier_size, min(last_frontier_size, min_frontier_size)}, reverse=True)
-        self._persistence = persistence
         self._scales = (potential_scale, gain_scale)
+        self._persistence = persistence
         robot = Robot(env)
         self._every = max(1, round(planner_period / robot.period))
         self._timeout = math.ceil(progress_timeout / robot.period)
@@ -93,12 +97,8 @@ class FrontierPolicy:
         self.driver.reset()
         self.finished = False
         self.frontiers: list[Frontier] = []
-        self._given_up: list[tuple[float, float]] = []
-        self._failed: list[tuple[tuple[float, float], int]] = []
-        self._step = self._planned_at = self._progress_at = self._last_found_at = 0
-        self._target: tuple[float, float] | None = None
-        self._arrived_at: int | None = None
-        self._shortest = math.inf
+        self._ledger = GoalLedger(self._timeout, self._patience)
+        self._step = self._planned_at = self._wanted_at = 0
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Return the next action.
@@ -117,84 +117,70 @@ class FrontierPolicy:
     def _is_due(self) -> bool:
         if self._step - self._planned_at >= self._every or self._step == 1:
             return True
-        return self.driver.must_plan or (self.driver.arrived and self._arrived_at is None)
+        return self.driver.must_plan or (self.driver.arrived and self._ledger.arrived_at is None)
 
     def _plan(self) -> None:
-        self._watch_progress()
+        """Choose a goal and set out for it; explore_lite's makePlan."""
+        if self.driver.goal is not None:
+            self._ledger.watch(self.driver.remaining, self.driver.arrived, self._step)
         terrain = self.driver.survey()
-        if terrain is None:
+        if terrain is not None and self._set_out(terrain):
+            self._wanted_at = self._step
             return
+        self.driver.stop()
+        # SLAM may be a scan behind, so that nothing left must stay so for a while
+        self.finished = terrain is not None and self._step - self._wanted_at >= self._patience
+
+    def _set_out(self, terrain: Terrain) -> bool:
+        """Set out for the best frontier; whether there is still one that is worth it."""
         for size in self._sizes:
             self.frontiers = self._search(terrain, size)
             for frontier in self.frontiers:
-                if self._set_out(frontier, terrain):
-                    self._last_found_at = self._step
-                    return
-        self.driver.stop()
-        self.finished = self._step - self._last_found_at >= self._patience  # SLAM may be a scan behind
+                for goal in self._goals(frontier, terrain):
+                    if self._ledger.is_given_up(goal):
+                        continue
+                    if self.driver.go(goal, terrain):
+                        self._ledger.pursue(goal, self._step)
+                        return True
+                    if self.driver.is_cornered:
+                        continue  # nothing can be said of this goal; any other that leads out of here is welcome
+                    if not self._ledger.fail(goal, math.dist(goal, self.driver.pose[:2]) < _BESIDE):
+                        self.driver.stop()
+                        return True  # turn on the spot and try again, rather than drive elsewhere and come back
+        return self.driver.is_cornered and bool(self.frontiers)
 
     def _search(self, terrain: Terrain, size: float) -> list[Frontier]:
+        """The frontiers of one pass, the best first."""
+        resolution = terrain.around.resolution
         found = find_frontiers(
-            terrain.occupancy, terrain.cell, terrain.around.resolution, size, *self._scales, goals=terrain.reachable
+            terrain.occupancy, terrain.cell, resolution, size, *self._scales, goals=terrain.reachable
         )
-        if self._target is None or not found:
-            return found
-        row, col = terrain.around.cell(*self._target)
-        apart = [math.sqrt(((frontier.cells - (row, col)) ** 2).sum(axis=1).min()) for frontier in found]
-        kept = int(np.argmin(apart))
-        if apart[kept] * terrain.around.resolution > _SAME_FRONTIER:
-            return found
-        return sorted(found, key=lambda f: f.cost - (self._persistence if f is found[kept] else 0.0))
+        kept = self._pursued(found, terrain)
+        is_last = size < self._sizes[0]
 
-    def _set_out(self, frontier: Frontier, terrain: Terrain) -> bool:
-        """Set out for a frontier: to its middle, or if that is of no use to its cell nearest to the robot."""
-        nearest = frontier.cells[np.argmin(((frontier.cells - np.array(terrain.cell)) ** 2).sum(axis=1))]
+        def cost(frontier: Frontier) -> float:
+            own = frontier.min_distance * resolution if is_last else frontier.cost
+            return own - (self._persistence if frontier is kept else 0.0)
+
+        return sorted(found, key=cost)
+
+    def _pursued(self, found: list[Frontier], terrain: Terrain) -> Frontier | None:
+        """The frontier that is being driven to, as far as it can be recognised: the one nearest to the goal."""
+        if self._ledger.pursued is None or not found:
+            return None
+        cell = terrain.around.cell(*self._ledger.pursued)
+        apart = [math.sqrt(((frontier.cells - cell) ** 2).sum(axis=1).min()) for frontier in found]
+        nearest = int(np.argmin(apart))
+        return found[nearest] if apart[nearest] * terrain.around.resolution <= _SAME_FRONTIER else None
+
+    @staticmethod
+    def _goals(frontier: Frontier, terrain: Terrain) -> Iterator[Goal]:
+        """Where to go for a frontier: to its middle, or if that is of no use to its cell nearest to the robot."""
+        row, col = frontier.cells[np.argmin(((frontier.cells - np.array(terrain.cell)) ** 2).sum(axis=1))].tolist()
         for cell, wanted in (
             (frontier.goal, frontier.centroid),
-            (nearest_cell(terrain.reachable, float(nearest[0]), float(nearest[1])), (nearest[0], nearest[1])),
+            (nearest_cell(terrain.reachable, row, col), (row, col)),
         ):
-            if math.dist(cell, wanted) * terrain.around.resolution > _FAR_GOAL:
-                continue
-            x, y = terrain.around.points(np.array([cell]))[0]
-            goal = (float(x), float(y))
-            if self._is_given_up(goal):
-                continue
-            if self.driver.go(goal, terrain):
-                self._note_goal(goal)
-                return True
-            self._note_failure(goal)
-        return False
-
-    def _note_failure(self, goal: tuple[float, float]) -> None:
-        """Give a goal up that cannot be set out for at three planning instants: one may be due to a bad pose."""
-        steps = [step for other, step in self._failed if _is_same(goal, other)]
-        if not steps or self._step - steps[-1] >= self._every:
-            self._failed.append((goal, self._step))
-            if len(steps) + 1 >= _TRIES:
-                self._given_up.append(goal)
-        self._last_found_at = self._step
-
-    def _is_given_up(self, goal: tuple[float, float]) -> bool:
-        return any(_is_same(goal, other) for other in self._given_up)
-
-    def _note_goal(self, goal: tuple[float, float]) -> None:
-        if self._target is None or not _is_same(goal, self._target):
-            self._target, self._arrived_at = goal, None
-            self._progress_at, self._shortest = self._step, math.inf
-
-    def _watch_progress(self) -> None:
-        """Give the goal up if it has been reached in vain or comes no nearer."""
-        if self.driver.goal is None:
-            return
-        remaining = self.driver.remaining
-        if remaining < self._shortest - 0.05:
-            self._shortest, self._progress_at = remaining, self._step
-        if self.driver.arrived and self._arrived_at is None:
-            self._arrived_at = self._step
-        in_vain = self._arrived_at is not None and self._step - self._arrived_at >= self._patience
-        if in_vain or self._step - self._progress_at >= self._timeout:
-            self._given_up.append(self.driver.goal)
-
-
-def _is_same(goal: tuple[float, float], other: tuple[float, float]) -> bool:
-    return abs(goal[0] - other[0]) < _SAME_GOAL and abs(goal[1] - other[1]) < _SAME_GOAL
+            if math.dist(cell, wanted) * terrain.around.resolution <= _FAR_GOAL:
+                x, y = terrain.around.points(np.array([cell]))[0]
+                yield float(x), float(y)

@@ -84,7 +84,7 @@ class ExplorationEpisodes:
         if self.options.stop_at is not None:
             terminated |= self._completeness >= self.options.stop_at
         limit = self.options.max_episode_steps
-        truncated = ~terminated & (self._steps >= limit) if limit is not None else np.zeros_like(terminated)
+        truncated = self._steps >= limit if limit is not None else np.zeros_like(terminated)
         if self.recorder is not None:
             self.recorder.record(self.core)
         return rewards, terminated, truncated

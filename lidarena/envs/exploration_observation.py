@@ -16,6 +16,8 @@ PICTURE = 64
 """Rows and columns of the egocentric picture."""
 PICTURE_CELL = 0.1
 """Side of one of its pixels [m]."""
+VARIANCE_BOUND = 1e6
+"""No pose in a map of at most 1 km a side varies more [m²]; Gymnasium asks for finite bounds."""
 
 
 class Observer(Protocol):
@@ -82,7 +84,7 @@ class MapObserver:
             {
                 "map": gym.spaces.Box(0, 255, (3, PICTURE, PICTURE), np.uint8),
                 "scan": gym.spaces.Box(0.0, 1.0, (beams,), np.float32),
-                "covariance": gym.spaces.Box(-np.inf, np.inf, (6,), np.float32),
+                "covariance": gym.spaces.Box(-VARIANCE_BOUND, VARIANCE_BOUND, (6,), np.float32),
                 "state": gym.spaces.Box(0.0, 1.0, (action_parts + 2,), np.float32),
             }
         )

@@ -87,8 +87,9 @@ class PathFollower:
 
     Attributes:
         commands: What the robot can do.
-        margin: Clearance that every planned pose keeps (m). A smaller one is tried where this finds nothing.
-        least_margin: The smallest of these (m).
+        margin: Clearance that every planned pose keeps (m). Smaller ones are tried where this finds nothing.
+        least_margin: The smallest of these (m), in places that are narrow.
+        last_margin: What is risked (m) to get out of a place where ``least_margin`` leaves no way.
         preferred: Clearance that is kept where there is room (m).
         lookahead: How far along the path commands are searched (m).
         reach: How near to the path's point is there (m); at the path's end ``end_reach``.
@@ -98,11 +99,13 @@ class PathFollower:
     commands: Commands
     margin: float = 0.18
     least_margin: float = 0.14
+    last_margin: float = 0.12
     preferred: float = 0.4
     lookahead: float = 1.5
     reach: float = 0.15
     end_reach: float = 0.25
     _queue: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64), repr=False)
+    _kept: float = field(default=math.inf, repr=False)  # clearance that the planned commands were meant to keep
     _turning: int | None = field(default=None, repr=False)
 
     @property
@@ -132,10 +135,11 @@ class PathFollower:
             (self.least_margin, self.lookahead),
             (self.least_margin, 2.0 * self.lookahead),  # past a place too narrow to end in
             (self.least_margin, 0.5 * self.lookahead),
+            (self.last_margin, 0.5 * self.lookahead),
         ):
             sequence = self._towards(path, pose, around, margin, lookahead)
             if len(sequence):
-                self._queue = sequence
+                self._queue, self._kept = sequence, min(margin, self.least_margin)
                 return True
         return False
 
@@ -159,14 +163,14 @@ class PathFollower:
         return steer(around, pose, (float(x), float(y)), self.commands, margin, self.preferred, reach=reach)
 
     def is_clear(self, pose: NDArray[np.float64], around: Surroundings, horizon: int = 8) -> bool:
-        """Return whether the next ``horizon`` planned commands keep ``least_margin``, driven from ``pose``.
+        """Return whether the next ``horizon`` planned commands keep clear, driven from ``pose``.
 
-        A robot that stands nearer than that already must not get any nearer.
+        They must keep ``least_margin``, or the smaller clearance that the robot has or that they were planned with.
         """
         at = np.asarray(pose, np.float64)
         here = gap_at(around.gap, around.closed, around.frame, at[0], at[1])
         least = tightest(around.gap, around.closed, around.frame, at, self.commands.moves, self._queue[:horizon])
-        return bool(least >= min(self.least_margin, max(here, 0.0)) - 0.01)
+        return bool(least >= min(self.least_margin, self._kept, max(here, 0.0)) - 0.01)
 
     def next(self) -> int | None:
         """Take the next planned command; None if there is none."""
@@ -188,12 +192,21 @@ class PathFollower:
         turns.sort(key=lambda k: -self.commands.velocities[k, 1])
 
         def room(k: int) -> float:
-            here = loiter_gap(around.gap, around.closed, around.frame, at, self.commands.velocities[k])
-            return min(float(here), self.margin)
+            return min(self._room(k, at, around), self.margin)
 
         if self._turning is None or room(self._turning) < self.least_margin:
             self._turning = max(turns, key=room)  # the first of equals: the sharpest to the left
         return self._turning
+
+    def can_loiter(self, pose: NDArray[np.float64], around: Surroundings) -> bool:
+        """Return whether the robot has room to drive a circle where it is, keeping ``least_margin``."""
+        at = np.asarray(pose, np.float64)
+        turns = [k for k, (_, w) in enumerate(self.commands.velocities) if w != 0.0]
+        return max(self._room(k, at, around) for k in turns) >= self.least_margin
+
+    def _room(self, command: int, pose: NDArray[np.float64], around: Surroundings) -> float:
+        velocity = self.commands.velocities[command]
+        return float(loiter_gap(around.gap, around.closed, around.frame, pose, velocity))
 
 
 @njit(cache=True, nogil=True)

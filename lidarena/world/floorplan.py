@@ -62,6 +62,8 @@ class Floorplan:
             MapError: A shape is not finite or degenerate, or the start stands in a wall, or nothing is free.
         """
         lines = np.asarray(walls, dtype=np.float64).reshape(-1, 4)
+        if not np.isfinite(lines).all():
+            raise MapError(f"map {name!r} has a wall whose coordinates are not finite")
         rings = [_wall_rectangle(line, thickness) for line in lines]
         rings += [_counter_clockwise(np.asarray(p, dtype=np.float64).reshape(-1, 2)) for p in polygons]
         parts = [np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in rings]

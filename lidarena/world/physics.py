@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Sequence
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -9,6 +10,12 @@ import pymunk
 from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan, Pose
+
+
+_SLOP = 1e-3
+"""Overlap that contacts tolerate [m]; pymunk's default of 0.1 is meant for pixels."""
+_MARGIN = 0.02
+"""Added to what a robot may travel when asking whether it can touch anything [m]."""
 
 
 class RobotSpec(NamedTuple):
@@ -63,33 +70,45 @@ class Physics:
         """Drive every robot for ``duration`` seconds and update ``poses``.
 
         Each step moves a body along the chord of the arc that the wheels describe, so a step of any length ends where the
-        arc ends; a robot that can touch nothing meanwhile takes a single one.
+        arc ends; robots that can touch nothing meanwhile take a single one.
 
         Args:
             commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
             duration: [s].
             clearance: ``(worlds, robots)`` distance from each robot's centre to the nearest surface [m].
         """
-        reach = self.spec.radius + 1.5 * duration * np.abs(commands[:, :, 0]).max(axis=1) + 0.01
-        near = (clearance.min(axis=1) < reach).tolist()
-        fine = math.ceil(duration / self.spec.substep - 1e-9)
+        closing = 1.0 if self.poses.shape[1] == 1 else 2.0  # another robot may come the other way
+        travel = closing * duration * np.abs(commands[:, :, 0]).max(axis=1)
+        near = (clearance.min(axis=1) < self.spec.radius + travel + _MARGIN).tolist()
         rows: list[list[list[float]]] = commands.tolist()
         for world, space in enumerate(self._spaces):
-            self._advance_world(world, space, rows[world], duration, fine if near[world] else 1)
+            bodies = self._bodies[world]
+            if near[world]:
+                self._push(space, bodies, rows[world], duration)
+            else:
+                for body, (speed, rate) in zip(bodies, rows[world], strict=True):
+                    _set_chord(body, speed, rate, duration)
+                space.step(duration)
+            self._read_poses(world, bodies)
 
-    def _advance_world(
-        self, world: int, space: pymunk.Space, commands: list[list[float]], duration: float, steps: int
+    def _push(
+        self, space: pymunk.Space, bodies: list[pymunk.Body], commands: list[list[float]], duration: float
     ) -> None:
-        dt = duration / steps
-        bodies = self._bodies[world]
-        for _ in range(steps):
-            for body, (speed, rate) in zip(bodies, commands, strict=True):
-                half = 0.5 * rate * dt
-                chord = speed * (math.sin(half) / half if half != 0.0 else 1.0)
-                heading = body.angle + half
-                body.velocity = (chord * math.cos(heading), chord * math.sin(heading))
-                body.angular_velocity = rate
-            space.step(dt)
+        """Drive among obstacles, in short steps.
+
+        A step of the solver moves the bodies first, then takes up velocities and clips them at contacts. The wheels' velocity
+        therefore goes in between, through pymunk's callback, and one step more than there are moves is needed.
+        """
+        steps = math.ceil(duration / self.spec.substep - 1e-9)
+        for body, (speed, rate) in zip(bodies, commands, strict=True):
+            body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
+            body.velocity_func = partial(_turn_wheels, speed, rate)
+        for _ in range(steps + 1):
+            space.step(duration / steps)
+        for body in bodies:
+            body.velocity_func = pymunk.Body.update_velocity
+
+    def _read_poses(self, world: int, bodies: list[pymunk.Body]) -> None:
         for r, body in enumerate(bodies):
             if abs(body.angle) > math.pi:  # a restored body starts from the wrapped heading: keep the same bits
                 body.angle = math.remainder(body.angle, 2.0 * math.pi)
@@ -105,8 +124,23 @@ class Physics:
         return body
 
 
+def _set_chord(body: pymunk.Body, speed: float, rate: float, dt: float) -> None:
+    """Give a body the velocity that leads along the chord of its next arc."""
+    half = 0.5 * rate * dt
+    chord = speed * (math.sin(half) / half if half != 0.0 else 1.0)
+    heading = body.angle + half
+    body.velocity = (chord * math.cos(heading), chord * math.sin(heading))
+    body.angular_velocity = rate
+
+
+def _turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
+    """pymunk's velocity callback: what the wheels do, before contacts have their say."""
+    _set_chord(body, speed, rate, dt)
+
+
 def _build_space(plan: Floorplan) -> pymunk.Space:
     space = pymunk.Space()
+    space.collision_slop = _SLOP
     walls: list[pymunk.Shape] = [
         pymunk.Segment(space.static_body, (x1, y1), (x2, y2), 0.0) for x1, y1, x2, y2 in plan.edges.tolist()
     ]

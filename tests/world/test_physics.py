@@ -1,0 +1,61 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.physics import Physics
+
+HALL = Floorplan.from_shapes("hall", (0, 0, 20, 20), walls=[(15, 0, 15, 20)], start=(5, 5, 0))
+
+
+def drive(
+    speed: float, rate: float, steps: int, pose: tuple[float, float, float], far: bool, duration: float = 0.2
+) -> np.ndarray:
+    physics = Physics(1)
+    physics.place(0, HALL, [pose])
+    for _ in range(steps):
+        physics.advance(np.array([[[speed, rate]]]), duration, np.array([[3.0 if far else 0.0]]))
+    return physics.poses[0, 0]
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(0.0, 0.5), st.floats(-1.0, 1.0), st.floats(-3.0, 3.0))
+def test_a_robot_follows_the_arc_of_its_wheels_with_one_step_or_many(speed: float, rate: float, theta: float) -> None:
+    turned = theta + 2.0 * rate
+    if abs(rate) > 1e-6:
+        radius = speed / rate
+        x = 5 + radius * (math.sin(turned) - math.sin(theta))
+        y = 5 - radius * (math.cos(turned) - math.cos(theta))
+    else:
+        x, y = 5 + 2.0 * speed * math.cos(theta), 5 + 2.0 * speed * math.sin(theta)
+    for far in (True, False):
+        pose = drive(speed, rate, 10, (5, 5, theta), far)
+        assert pose[:2] == pytest.approx((x, y), abs=1e-5)
+        assert math.remainder(pose[2] - turned, 2 * math.pi) == pytest.approx(0, abs=1e-9)
+        assert -math.pi <= pose[2] <= math.pi
+
+
+def test_a_wall_stops_the_robot() -> None:
+    pose = drive(0.5, 0.0, 60, (12, 5, 0), far=False)
+    assert pose[0] <= 15 - 0.05 - 0.105 + 0.02
+    assert pose[0] > 14.5
+
+
+def test_two_robots_cannot_share_a_place() -> None:
+    physics = Physics(1, robots=2)
+    physics.place(0, HALL, [(5, 5, 0), (6, 5, math.pi)])
+    for _ in range(20):
+        physics.advance(np.array([[[0.3, 0.0], [0.3, 0.0]]]), 0.2, np.zeros((1, 2)))
+    gap = np.hypot(*(physics.poses[0, 0, :2] - physics.poses[0, 1, :2]))
+    assert gap >= 2 * 0.105 - 0.02
+
+
+def test_placing_again_forgets_the_old_robot() -> None:
+    physics = Physics(1)
+    physics.place(0, HALL, [(5, 5, 0)])
+    physics.place(0, HALL, [(7, 7, 1)])
+    physics.advance(np.zeros((1, 1, 2)), 0.2, np.array([[3.0]]))
+    assert physics.poses[0, 0] == pytest.approx((7, 7, 1))
