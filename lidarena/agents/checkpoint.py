@@ -213,7 +213,7 @@ def _save_arrays(path: Path, arrays: Arrays) -> None:
         if np.asarray(value).dtype.hasobject:
             raise TypeError(f"the state {key!r} holds Python objects, which only a pickle could keep")
     with path.open("wb") as stream:
-        np.savez(stream, **arrays)  # type: ignore[arg-type]  # the stub takes the arrays for its own keyword
+        np.savez_compressed(stream, **arrays)  # type: ignore[arg-type]  # the stub takes the arrays for its own keyword
 
 
 def _load_arrays(path: Path) -> Arrays:

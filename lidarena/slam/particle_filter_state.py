@@ -19,7 +19,9 @@ class FilterParameters(NamedTuple):
         angular_update: … or turned this far [rad], …
         temporal_update: … or when more than this has passed [s]; infinity switches the clock off.
         resample_share: Resample when N_eff falls below this share of N.
-        likelihood_gain: Factor on the scans' log-likelihood; neighbouring beams err together, so below 1.
+        likelihood_gain: Factor on the scans' log-likelihood. Beams err together, and all of them against a map that erred before:
+            taken at face value they end every doubt and the filter grows overconfident. With this factor the error of the
+            pose is as large as its covariance says (``benchmarks/filter_accuracy.py``).
         loyalty: The published map leaves its particle's descendants only for one this many times as likely.
         history: Scans that the published map can take back.
         noise: The odometry's noise, per reading.
@@ -31,7 +33,7 @@ class FilterParameters(NamedTuple):
     angular_update: float = 0.2
     temporal_update: float = 0.5
     resample_share: float = 0.5
-    likelihood_gain: float = 0.1
+    likelihood_gain: float = 0.005
     loyalty: float = 3.0
     history: int = 256
     noise: OdometryNoise = OdometryNoise()

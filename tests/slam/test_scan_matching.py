@@ -1,0 +1,102 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from lidarena.slam.likelihood_field import empty_fields, register_points
+from lidarena.slam.scan_matching import MatcherParameters, determinant, invert, match, solve
+from lidarena.slam.scan_points import extract_points
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.lidar import Lidar
+
+ROOM = Floorplan.from_shapes(
+    "room",
+    (0, 0, 4, 3),
+    walls=[(0, 0, 4, 0), (4, 0, 4, 3), (4, 3, 0, 3), (0, 3, 0, 0), (2.5, 1.2, 2.5, 3)],
+    start=(1.2, 1.2, 0.3),
+)
+TRUE = np.array(ROOM.start)
+
+
+def scan_of(plan: Floorplan, pose: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
+    lidar = Lidar([plan])
+    ranges = lidar.cast(pose[None, None], np.zeros(1, np.int64))[0, 0]
+    hit = ranges < 3.5
+    ranges[hit] += noise * np.random.default_rng(0).normal(size=hit.sum())
+    points, flat = np.zeros((360, 5)), np.zeros(360, np.bool_)
+    count = extract_points(ranges.astype(np.float32), lidar.directions, 3.5, points, flat)
+    return points[:count], flat[:count]
+
+
+def matched(start: np.ndarray, information: np.ndarray, plan: Floorplan = ROOM, true: np.ndarray = TRUE) -> tuple:
+    points, flat = scan_of(plan, true, 0.01)
+    fields = empty_fields(1, 1, 112, 512)
+    origin = np.array([-1.0, -1.0])
+    register_points(fields, 0, 0, true, origin, 0.05, points)
+    pose, posterior = start.copy(), np.zeros((3, 3))
+    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, points[flat], MatcherParameters(iterations=25))
+    value = match(*arguments, start.copy(), information, pose, posterior)
+    return pose, posterior, value
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-0.08, 0.08), st.floats(-0.08, 0.08), st.floats(-0.06, 0.06))
+def test_a_displaced_pose_is_pulled_back(dx: float, dy: float, dt: float) -> None:
+    pose, posterior, _ = matched(TRUE + (dx, dy, dt), np.eye(3))
+    assert pose[:2] == pytest.approx(TRUE[:2], abs=0.012)
+    assert pose[2] == pytest.approx(TRUE[2], abs=0.01)
+    assert np.linalg.eigvalsh(posterior).min() > 0
+
+
+def test_the_likelihood_prefers_the_prior_that_agrees_with_the_map() -> None:
+    stiff = np.diag([1e5, 1e5, 1e5])
+    here, away = matched(TRUE, stiff)[2], matched(TRUE + (0.1, 0.0, 0.0), stiff)[2]
+    assert here > away
+
+
+def test_a_bare_corridor_informs_across_but_hardly_along() -> None:
+    walls = [(0, 0, 20, 0), (0, 1.2, 20, 1.2), (0, 0, 0, 1.2), (20, 0, 20, 1.2)]
+    plan = Floorplan.from_shapes("corridor", (0, 0, 20, 1.2), walls=walls, start=(10, 0.6, 0.0))
+    _, posterior, _ = matched(np.array(plan.start), np.diag([1e-6, 1e-6, 1e-6]), plan, np.array(plan.start))
+    assert posterior[0, 0] < 0.02 * posterior[1, 1]
+
+
+def test_normals_point_from_flat_walls_to_the_sensor() -> None:
+    points, flat = scan_of(ROOM, TRUE)
+    assert flat.mean() > 0.7
+    facing = (points[:, :2] * points[:, 2:4]).sum(axis=1)
+    assert (facing < 0).all()
+    turned = np.stack([np.cos(TRUE[2]), np.sin(TRUE[2])])
+    world_x = points[flat, 2] * turned[0] - points[flat, 3] * turned[1]
+    world_y = points[flat, 2] * turned[1] + points[flat, 3] * turned[0]
+    assert (np.maximum(np.abs(world_x), np.abs(world_y)) > 0.99).mean() > 0.95
+
+
+def test_points_are_spaced_and_lie_on_the_walls() -> None:
+    points, _ = scan_of(ROOM, TRUE)
+    cos, sin = math.cos(TRUE[2]), math.sin(TRUE[2])
+    world = TRUE[:2] + points[:, :2] @ np.array([[cos, sin], [-sin, cos]])
+    assert np.abs(ROOM.clearance(world)).max() < 0.02
+    apart = np.hypot(*np.diff(points[:, :2], axis=0).T)
+    assert np.median(apart) > 0.03
+    assert len(points) < 300
+
+
+def test_a_scan_without_returns_has_no_points() -> None:
+    points, flat = np.zeros((360, 5)), np.zeros(360, np.bool_)
+    directions = np.ones((2, 360))
+    assert extract_points(np.full(360, 3.5, np.float32), directions, 3.5, points, flat) == 0
+
+
+@given(st.lists(st.floats(-3, 3), min_size=9, max_size=9), st.lists(st.floats(-3, 3), min_size=3, max_size=3))
+def test_three_by_three_algebra_agrees_with_numpy(entries: list[float], right: list[float]) -> None:
+    root = np.array(entries).reshape(3, 3)
+    matrix = root @ root.T + 0.1 * np.eye(3)
+    inverse, solution = np.zeros((3, 3)), np.zeros(3)
+    invert(matrix, inverse)
+    solve(matrix, np.array(right), solution)
+    assert determinant(matrix) == pytest.approx(np.linalg.det(matrix), rel=1e-6)
+    assert inverse == pytest.approx(np.linalg.inv(matrix), rel=1e-5, abs=1e-7)
+    assert solution == pytest.approx(np.linalg.solve(matrix, right), rel=1e-5, abs=1e-6)

@@ -1,0 +1,50 @@
+import math
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lidarena.slam.uncertainty import (
+    COVARIANCE_FLOOR,
+    a_optimality,
+    d_optimality,
+    e_optimality,
+    pose_moments,
+    weight_entropy,
+)
+
+ENTRIES = st.lists(st.floats(-2, 2), min_size=9, max_size=9)
+
+
+@given(ENTRIES)
+def test_criteria_are_means_of_the_eigenvalues(entries: list[float]) -> None:
+    root = np.array(entries).reshape(3, 3)
+    covariance = root @ root.T + 0.01 * np.eye(3)
+    values = np.linalg.eigvalsh(covariance)
+    assert d_optimality(covariance) == pytest.approx(math.exp(np.log(values).mean()), rel=1e-6)
+    assert a_optimality(covariance) == pytest.approx(values.mean())
+    assert e_optimality(covariance) == pytest.approx(values.max())
+    assert d_optimality(covariance) <= a_optimality(covariance) + 1e-9 <= e_optimality(covariance) + 1e-8
+
+
+def test_entropy_is_greatest_for_equal_weights_and_zero_for_one() -> None:
+    assert weight_entropy(np.full(30, 1 / 30)) == pytest.approx(math.log(30))
+    assert weight_entropy(np.array([1.0, 0.0, 0.0])) == 0.0
+
+
+def test_headings_are_averaged_on_the_circle() -> None:
+    particles = np.array([[0, 0, math.pi - 0.1], [2, 0, -math.pi + 0.1]])
+    mean, covariance = np.zeros(3), np.zeros((3, 3))
+    pose_moments(particles, np.array([0.5, 0.5]), mean, covariance)
+    assert mean[:2] == pytest.approx((1, 0))
+    assert abs(mean[2]) == pytest.approx(math.pi)
+    assert covariance[2, 2] == pytest.approx(0.01 + COVARIANCE_FLOOR[2])
+    assert covariance[0, 2] == pytest.approx(0.1)
+
+
+def test_coinciding_particles_are_certain_but_not_singular() -> None:
+    mean, covariance = np.zeros(3), np.zeros((3, 3))
+    pose_moments(np.tile([1.0, 2.0, 3.0], (30, 1)), np.full(30, 1 / 30), mean, covariance)
+    assert covariance == pytest.approx(np.diag(COVARIANCE_FLOOR))
+    assert d_optimality(covariance) > 0
