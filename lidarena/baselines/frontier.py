@@ -16,6 +16,7 @@ from lidarena.world.refusals import ConfigError
 _FAR_GOAL = 3.0  # a frontier whose nearest reachable cell is farther away than this is behind something (m)
 _SAME_FRONTIER = 1.0  # a frontier with a cell so near to the goal is the one that was driven to (m)
 _BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a place (m)
+_GROWTH = 0.001  # growth of the known map that justifies a second pass
 
 
 @register("frontier", family="exploration")
@@ -50,6 +51,7 @@ class FrontierPolicy:
         progress_timeout: float = 30.0,
         arrival_patience: float = 2.0,
         persistence: float = 0.5,
+        last_pass_timeout: float = 60.0,
     ) -> None:
         """Make it for an exploration environment.
 
@@ -65,6 +67,7 @@ class FrontierPolicy:
 
             persistence: How much less another frontier must cost (m) for the robot to turn away from the one it is
                 driving to, as long as that one has not vanished; 0 = explore_lite.
+            last_pass_timeout: The second pass ends when this time (s) has not added 0.1% to the map.
 
         Raises:
             ConfigError: for an option that is negative or not finite.
@@ -78,6 +81,7 @@ class FrontierPolicy:
             "progress_timeout": progress_timeout,
             "arrival_patience": arrival_patience,
             "persistence": persistence,
+            "last_pass_timeout": last_pass_timeout,
         }
         for name, value in options.items():
             if not 0.0 <= value < math.inf:
@@ -89,6 +93,7 @@ class FrontierPolicy:
         self._every = max(1, round(planner_period / robot.period))
         self._timeout = math.ceil(progress_timeout / robot.period)
         self._patience = math.ceil(arrival_patience / robot.period)
+        self._last_pass = math.ceil(last_pass_timeout / robot.period)
         self.driver = Driver(robot)
         self.reset()
 
@@ -99,6 +104,7 @@ class FrontierPolicy:
         self.frontiers: list[Frontier] = []
         self._ledger = GoalLedger(self._timeout, self._patience)
         self._step = self._planned_at = self._wanted_at = 0
+        self._known, self._grown_at = 0, 0
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Return the next action.
@@ -135,6 +141,8 @@ class FrontierPolicy:
         """Set out for the best frontier; whether there is still one that is worth it."""
         for size in self._sizes:
             self.frontiers = self._search(terrain, size)
+            if self._is_last(size) and self._is_exhausted(terrain):
+                return False
             for frontier in self.frontiers:
                 for goal in self._goals(frontier, terrain):
                     if self._ledger.is_given_up(goal):
@@ -156,13 +164,23 @@ class FrontierPolicy:
             terrain.occupancy, terrain.cell, resolution, size, *self._scales, goals=terrain.reachable
         )
         kept = self._pursued(found, terrain)
-        is_last = size < self._sizes[0]
 
         def cost(frontier: Frontier) -> float:
-            own = frontier.min_distance * resolution if is_last else frontier.cost
+            own = frontier.min_distance * resolution if self._is_last(size) else frontier.cost
             return own - (self._persistence if frontier is kept else 0.0)
 
         return sorted(found, key=cost)
+
+    def _is_last(self, size: float) -> bool:
+        """Whether the pass for frontiers of a size (m) is the second one."""
+        return size < self._sizes[0]
+
+    def _is_exhausted(self, terrain: Terrain) -> bool:
+        """Whether the map has hardly grown for too long."""
+        known = int(np.count_nonzero(terrain.occupancy >= 0))
+        if known > (1.0 + _GROWTH) * self._known:
+            self._known, self._grown_at = known, self._step
+        return self._step - self._grown_at >= self._last_pass
 
     def _pursued(self, found: list[Frontier], terrain: Terrain) -> Frontier | None:
         """The frontier that is being driven to, as far as it can be recognised: the one nearest to the goal."""

@@ -1,5 +1,6 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations and infos; shared by batch and single environment."""
 
+import math
 from collections.abc import Iterable, Sequence
 from typing import Any
 
@@ -49,7 +50,7 @@ class ExplorationEpisodes:
         self._steps = np.zeros(worlds, np.int64)
         self._previous = np.zeros((worlds, parts))
         self._completeness = np.zeros(worlds)
-        self._terms: dict[str, NDArray[np.float64]] = {}
+        self._terms = {name: np.zeros(worlds) for name in (options.reward, "collision")}
         self._compiled = False
 
     def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
@@ -61,8 +62,9 @@ class ExplorationEpisodes:
                 self._previous[world] = 0.0
                 if self.recorder is not None:
                     self.recorder.begin(world, self.core)
+                for term in self._terms.values():
+                    term[world] = 0.0
         self._completeness = self.core.completeness
-        self._terms = {name: np.zeros(self.core.worlds) for name in (self.options.reward, "collision")}
 
     def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
         """Act in every world; returns rewards, terminated and truncated, each (worlds,).
@@ -102,7 +104,8 @@ class ExplorationEpisodes:
         if self.options.reward == "completeness":
             gain = 100.0 * (self._completeness - before)
         else:
-            gain = 1.0 + np.tanh(self.options.eta / self.core.criteria[:, 0])
+            # NumPy's tanh takes another path for the last few of an array: world i would depend on the batch's size
+            gain = np.array([1.0 + math.tanh(self.options.eta / d) for d in self.core.criteria[:, 0].tolist()])
         self._terms = {self.options.reward: np.where(alive, gain, 0.0), "collision": np.where(alive, 0.0, CRASH_REWARD)}
         return self._terms[self.options.reward] + self._terms["collision"]
 
@@ -126,7 +129,7 @@ class ExplorationEpisodes:
             "time": self._steps * self.options.decision_period,
             "collision": core.collision.copy(),
             "odometry_pose": core.dead_reckoning[:, 0].copy(),
-            "reward_terms": dict(self._terms),
+            "reward_terms": {name: term.copy() for name, term in self._terms.items()},
             "map": view,
             "resolution": np.full(core.worlds, RESOLUTION),
             "origin": core.maps.origin.copy(),
@@ -145,7 +148,6 @@ class ExplorationEpisodes:
         """Continue from the arrays of other episodes with the same options."""
         self._steps[:], self._previous[:] = saved["steps"], saved["previous"]
         self._completeness = saved["completeness"].copy()
-        self._terms = {name: np.zeros(self.core.worlds) for name in (self.options.reward, "collision")}
         self.core.load_arrays(saved)
 
 

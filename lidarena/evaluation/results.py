@@ -159,8 +159,8 @@ def write_results_folder(folder: Path, fill: Callable[[Path], None]) -> Path | N
         ConfigError: See `check_folder`.
         OSError: The place is not writable or full.
     """
-    folder = Path(os.path.abspath(folder))
     check_folder(folder)
+    wish, folder = folder, Path(os.path.abspath(folder))
     temporary = folder.with_name(f".{folder.name}.{os.getpid()}.part")
     shutil.rmtree(temporary, ignore_errors=True)
     temporary.mkdir(parents=True)
@@ -170,7 +170,7 @@ def write_results_folder(folder: Path, fill: Callable[[Path], None]) -> Path | N
         temporary.rename(folder)
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
-    return earlier
+    return wish.with_name(earlier.name) if earlier and wish.name else earlier
 
 
 def _set_aside(folder: Path) -> Path | None:

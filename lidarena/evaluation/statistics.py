@@ -23,6 +23,8 @@ Statistic = Callable[[Floats], Floats]
 
 RESAMPLES = 10_000
 LEVEL = 0.95
+LEAST_SAMPLES = 5
+"""Below this, resampling knows too little of the scatter: the "95%" of two samples hold the mean half of the time."""
 
 
 class Interval(NamedTuple):
@@ -76,15 +78,15 @@ def bootstrap(
         method: BCa, or the plain percentiles of the resampled statistics.
 
     Returns:
-        The statistic and its bounds. All NaN for no sample; bounds NaN for a single one, which says nothing about
-        scatter; bounds equal to the value where all samples are the same.
+        The statistic and its bounds. All NaN for no sample; bounds NaN below `LEAST_SAMPLES`; bounds equal to the value
+        where all samples are the same.
     """
     values = np.asarray(samples, dtype=np.float64)
     values = values[~np.isnan(values)]
     if values.size == 0:
         return Interval(np.nan, np.nan, np.nan)
     estimate = float(statistic(values))
-    if values.size == 1:
+    if values.size < LEAST_SAMPLES:
         return Interval(estimate, np.nan, np.nan)
     if np.all(values == values[0]):
         return Interval(estimate, estimate, estimate)

@@ -13,15 +13,14 @@ from rich.text import Text
 
 from lidarena.evaluation.measures import MEASURES, Measure
 from lidarena.evaluation.results import Row, best, contenders, difference
-from lidarena.evaluation.statistics import Interval
+from lidarena.evaluation.statistics import LEAST_SAMPLES, Interval
 
 ABSENT = "–"
 NOTE = (
-    "Mean over episodes and its 95% interval (BCa bootstrap; Wilson's and Newcombe's for shares). "
-    "Policies met the same seeds. "
-    "Bold: the best, and what cannot be told from it by paired differences. Path, time, D-optimality and pose error "
-    "are compared only among policies that explored as much as the best; they count every episode, also those cut "
-    "short by a collision."
+    f"Mean over episodes and its 95% interval (BCa bootstrap, from {LEAST_SAMPLES} episodes on; Wilson's and "
+    "Newcombe's for shares). Policies met the same seeds. Bold: the best, and what cannot be told from it by paired "
+    "differences. Path, time, D-optimality and pose error are compared only among policies that explored as much as "
+    "the best; they count every episode, also those cut short by a collision."
 )
 LATEX_SIGNS = {
     "\\": r"\textbackslash{}",

@@ -161,15 +161,22 @@ def nearest_cell(mask: NDArray[np.bool_], row: float, col: float) -> tuple[int, 
     Returns:
         [row, column], or (-1, -1) if the mask is empty.
     """
+    rows, cols = mask.shape
     best = np.inf
     best_row, best_col = -1, -1
-    for r in range(mask.shape[0]):
-        if (r - row) ** 2 >= best:
+    middle = min(max(round(row), 0), rows - 1)
+    for k in range(2 * rows):  # rows from the point's outwards, until none can be nearer
+        offset = (k + 1) // 2
+        if (offset - 0.5) ** 2 > best and offset > 0:
+            break
+        r = middle + (offset if k % 2 else -offset)
+        away = (r - row) ** 2
+        if r < 0 or r >= rows or away > best:
             continue
-        for c in range(mask.shape[1]):
+        for c in range(cols):
             if mask[r, c]:
-                d = (r - row) ** 2 + (c - col) ** 2
-                if d < best:
+                d = away + (c - col) ** 2
+                if d < best or (d == best and (r < best_row or (r == best_row and c < best_col))):
                     best, best_row, best_col = d, r, c
     return best_row, best_col
 

@@ -49,8 +49,10 @@ class Inflation:
                 f"inflation radii of {self.lethal_radius} (lethal) and {self.radius} m,"
                 " allowed is 0 <= lethal_radius <= radius"
             )
-        if not (0.0 <= self.weight < math.inf and 0.0 <= self.rate < math.inf):
-            raise ConfigError(f"inflation weight {self.weight} and rate {self.rate}, allowed are finite numbers >= 0")
+        if not (0.0 <= self.weight < math.inf and 0.0 < self.rate < math.inf):
+            raise ConfigError(
+                f"inflation weight {self.weight} and rate {self.rate}, allowed are finite numbers >= 0 and > 0"
+            )
         if self.decay not in get_args(Decay):
             raise ConfigError(f"unknown decay {self.decay!r}{suggest(str(self.decay), get_args(Decay))}")
         if not 1 <= self.occupied_from <= 100:
@@ -110,6 +112,31 @@ def clearance(
     return result
 
 
+@njit(cache=True, nogil=True)
+def _costs(
+    occupancy: NDArray[np.int8],
+    distance: NDArray[np.float32],
+    lethal_radius: float,
+    radius: float,
+    weight: float,
+    rate: float,
+    through_unknown: bool,
+    occupied_from: int,
+) -> NDArray[np.float64]:
+    """Costs of the cells (rows, cols); ``rate`` <= 0 stands for the linear decay."""
+    cost = np.ones(occupancy.shape)
+    slope = 1.0 / max(radius - lethal_radius, 1e-9)
+    for r in range(occupancy.shape[0]):
+        for c in range(occupancy.shape[1]):
+            beyond = distance[r, c] - lethal_radius
+            unknown = occupancy[r, c] < 0 and not through_unknown
+            if beyond < 0.0 or unknown or occupancy[r, c] >= occupied_from:
+                cost[r, c] = np.inf
+            elif distance[r, c] < radius:
+                cost[r, c] += weight * (math.exp(-rate * beyond) if rate > 0.0 else max(1.0 - slope * beyond, 0.0))
+    return cost
+
+
 def inflate(
     occupancy: NDArray[np.int8],
     resolution: float,
@@ -129,18 +156,16 @@ def inflate(
     """
     if distance is None:
         distance = clearance(occupancy, resolution, inflation.occupied_from, inflation.radius + resolution)
-    near = distance < inflation.radius
-    beyond = distance[near].astype(np.float64) - inflation.lethal_radius
-    cost = np.ones(occupancy.shape)
-    if inflation.decay == "exponential":
-        cost[near] += inflation.weight * np.exp(-inflation.rate * np.maximum(beyond, 0.0))
-    else:
-        reach = max(inflation.radius - inflation.lethal_radius, 1e-9)
-        cost[near] += inflation.weight * np.clip(1.0 - beyond / reach, 0.0, 1.0)
-    blocked = (distance < inflation.lethal_radius) | (occupancy >= inflation.occupied_from)
-    if not inflation.through_unknown:
-        blocked |= occupancy < 0
-    cost[blocked] = np.inf
+    cost: NDArray[np.float64] = _costs(
+        np.ascontiguousarray(occupancy, dtype=np.int8),
+        distance,
+        inflation.lethal_radius,
+        inflation.radius,
+        inflation.weight,
+        inflation.rate if inflation.decay == "exponential" else -1.0,
+        inflation.through_unknown,
+        inflation.occupied_from,
+    )
     return cost
 
 

@@ -113,6 +113,18 @@ def test_nearest_cell_takes_the_first_of_equals():
     assert nearest_cell(np.zeros((2, 2), bool), 0.0, 0.0) == (-1, -1)
 
 
+@settings(max_examples=200, deadline=None)
+@given(
+    arrays(bool, st.tuples(st.integers(1, 9), st.integers(1, 9)), elements=st.sampled_from([False, False, True])),
+    st.sampled_from([-3.0, 0.0, 1.25, 2.5, 4.0, 6.7, 12.0]),
+    st.sampled_from([-2.0, 0.0, 1.5, 3.0, 5.3, 11.0]),
+)
+def test_nearest_cell_agrees_with_looking_at_all(mask, row, col):
+    cells = np.argwhere(mask).tolist()
+    expected = min(cells, key=lambda cell: (cell[0] - row) ** 2 + (cell[1] - col) ** 2, default=[-1, -1])
+    assert list(nearest_cell(mask, row, col)) == expected
+
+
 @pytest.mark.parametrize(("start", "resolution", "says"), [((5, 0), RES, r"\(5, 0\)"), ((0, 0), 0.0, "resolution")])
 def test_bad_input_is_refused(start, resolution, says):
     with pytest.raises(ConfigError, match=says):

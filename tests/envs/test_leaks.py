@@ -1,0 +1,81 @@
+"""Nothing leaks: what the robot is told comes from its sensors, never from where it really is."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lidarena.envs import ExplorationEnv
+
+ACTIONS = [0] * 8 + [1] * 8 + [0] * 8 + [2] * 8
+
+
+def flat(prefix: str, value: Any) -> dict[str, np.ndarray]:
+    if isinstance(value, dict):
+        return {name: array for key, item in value.items() for name, array in flat(f"{prefix}.{key}", item).items()}
+    return {prefix: np.asarray(value).copy()}
+
+
+def episode(shift: tuple[float, float, float] | None, **keywords: Any) -> list[dict[str, np.ndarray]]:
+    """An episode in which, if ``shift`` is given, the true pose is moved after the sensors were read."""
+    env = ExplorationEnv(map="env3", expose_truth=True, **keywords)
+    observation, info = env.reset(seed=0)
+    core = env._episodes.core
+    record = [flat("observation", observation) | flat("info", info)]
+    for action in ACTIONS:
+        sense, moved = core._sense, []
+
+        def sense_then_shift(first: int, last: int, sense: Any = sense, moved: Any = moved) -> None:
+            sense(first, last)
+            if shift is not None:
+                moved.append(core.physics.poses.copy())
+                core.physics.poses += shift
+
+        core._sense = sense_then_shift  # type: ignore[method-assign]
+        observation, reward, terminated, _, info = env.step(action)
+        core._sense = sense  # type: ignore[method-assign]
+        if moved:
+            core.physics.poses[:] = moved[0]
+        assert not terminated
+        record.append(flat("observation", observation) | flat("info", info) | flat("reward", reward))
+    return record
+
+
+@pytest.mark.parametrize("observation", ["da_slam", "map"])
+@pytest.mark.parametrize("reward", ["completeness", "d_optimality"])
+def test_shifting_the_truth_unnoticed_changes_nothing_but_the_truth(observation: str, reward: str) -> None:
+    honest = episode(None, observation=observation, reward=reward)
+    shifted = episode((3.0, -2.0, 1.0), observation=observation, reward=reward)
+    for before, after in zip(honest, shifted, strict=True):
+        changed = {name for name in before if before[name].tobytes() != after[name].tobytes()}
+        assert changed <= {"info.truth.pose"}
+    assert any(a["info.truth.pose"].tobytes() != b["info.truth.pose"].tobytes() for a, b in zip(honest, shifted, strict=True))
+
+
+def test_truth_is_given_only_when_asked_for() -> None:
+    assert "truth" not in ExplorationEnv(map="env1").reset(seed=0)[1]
+    assert set(ExplorationEnv(map="env1", expose_truth=True).reset(seed=0)[1]["truth"]) == {"pose", "path_length"}
+
+
+def test_the_estimate_is_not_the_truth_and_the_filter_follows_the_seed() -> None:
+    clouds = []
+    for seed in (1, 1, 2):
+        env = ExplorationEnv(map="env2", expose_truth=True)
+        env.reset(seed=seed)
+        for _ in range(6):
+            *_, info = env.step(0)
+        assert not np.array_equal(info["pose"], info["truth"]["pose"])
+        clouds.append(info["pose"].tobytes())
+    assert clouds[0] == clouds[1] != clouds[2]
+
+
+def test_inner_walls_stop_the_robot() -> None:
+    env = ExplorationEnv(map="env1", expose_truth=True, stop_at=None)
+    plan = env._episodes.core.plans[0]
+    for seed in range(6):
+        _, info = env.reset(seed=seed)
+        rng, ended = np.random.default_rng(seed), False
+        while not ended:
+            *_, ended, truncated, info = env.step(int(rng.choice([0, 0, 0, 1, 2])))
+            assert plan.clearance(info["truth"]["pose"][None, :2])[0] > 0.0
+            ended = ended or truncated

@@ -1,0 +1,33 @@
+"""A few steps in the environments that the evaluation is for."""
+
+import numpy as np
+import pytest
+
+from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
+from lidarena.evaluation.episodes import Episode, run_episode
+from lidarena.evaluation.participants import make_participants
+
+
+def short_episode(policy: str, seed: int) -> Episode:
+    env, driver = make_participants(EnvEntry(id="lidarena/Env1-v0"), PolicyEntry(name=policy))
+    return run_episode(env, driver, seed, max_steps=25, keep_trace=True)
+
+
+@pytest.mark.parametrize("policy", ["random", "frontier"])
+def test_everything_is_measured(policy: str) -> None:
+    episode = short_episode(policy, seed=3)
+    values = {name: value for name, value in episode.measures.items() if name != "entropy_gmapping"}
+    assert np.isfinite(list(values.values())).all()
+    assert 0 < values["completeness"] < 1 and 0 < values["path_length"] < 25 * 0.1 + 0.1
+    assert values["time"] == pytest.approx(0.2 * values["steps"])
+    assert 0 < values["trajectory_error"] < 0.2
+    assert episode.trace is not None and episode.trace.grid is not None
+    walked = np.hypot(*np.diff(episode.trace.true, axis=0).T).sum()
+    assert walked == pytest.approx(values["path_length"], rel=0.02, abs=0.01)
+
+
+def test_a_seed_fixes_an_episode() -> None:
+    first, second = short_episode("random", 5), short_episode("random", 5)
+    for one, other in ((first, second), (first, short_episode("random", 6))):
+        same = np.array_equal(one.trace.true, other.trace.true)  # type: ignore[union-attr]
+        assert same == (other is second)
