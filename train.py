@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
         print(refusal, file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"{error}; what was saved before is untouched", file=sys.stderr)
+        print(f"the training has stopped: {error}", file=sys.stderr)
         return 1
     except agents.TrainingStopped as stopped:
         print(stopped, file=sys.stderr)

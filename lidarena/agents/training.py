@@ -207,7 +207,7 @@ class _BetweenUpdates(BaseCallback):
         self._first = False
 
     def _on_rollout_end(self) -> None:
-        # Numba sets OpenMP's number of threads, and so PyTorch's, when its thread pool starts: at the worlds' first step.
+        # Numba sets OpenMP's number of threads, and so PyTorch's, when its pool starts: at the worlds' first step.
         torch.set_num_threads(self._run.config.torch_threads)
 
     def _on_step(self) -> bool:

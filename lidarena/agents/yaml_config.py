@@ -23,6 +23,7 @@ from lidarena.world.refusals import ConfigError, suggest
 M = TypeVar("M", bound=BaseModel)
 
 _VALUE_WIDTH = 60
+_EXOTIC_LINE_BREAKS = frozenset("\x85\u2028\u2029")
 
 
 class ConfigModel(BaseModel):
@@ -137,6 +138,8 @@ def dump_config(model: BaseModel, path: str | Path) -> Path:
     """Write a configuration so that `load_config` gives it back equal; the file appears whole or not at all."""
     content = model.model_dump(mode="json", by_alias=True)
     text = yaml.dump(content, Dumper=_Dumper, sort_keys=False, allow_unicode=True, width=120)
+    if not _EXOTIC_LINE_BREAKS.isdisjoint(text):  # PyYAML writes them plainly, and reads them as spaces
+        text = yaml.dump(content, Dumper=_Dumper, sort_keys=False, allow_unicode=False, width=120)
     return write_text(path, text)
 
 

@@ -14,7 +14,6 @@ from lidarena.world.refusals import ConfigError
 
 FULL_SPEED, TURN_SPEED, TURN_RATE = 0.5, 0.05, 0.3
 """DA-SLAM's actions: forward at 0.5 m/s; left and right at 0.05 m/s and 0.3 rad/s."""
-LEFT = (TURN_SPEED, TURN_RATE)
 _STEERED = [(FULL_SPEED, 0.0), (0.0, 1.0), (0.0, -1.0), (FULL_SPEED, 0.5), (FULL_SPEED, -0.5)]
 _BEAM_ANGLES = np.array([0.0, math.pi / 4, math.pi / 2, -math.pi / 4, -math.pi / 2])
 _MAX_RANGE = 3.5
@@ -41,7 +40,7 @@ class Robot:
         self.period = _decision_period(env)
         self._discrete = isinstance(space, gym.spaces.Discrete)
         if isinstance(space, gym.spaces.Discrete) and space.n == 3:
-            rows = [(FULL_SPEED, 0.0), LEFT, (TURN_SPEED, -TURN_RATE)]
+            rows = [(FULL_SPEED, 0.0), (TURN_SPEED, TURN_RATE), (TURN_SPEED, -TURN_RATE)]
         elif isinstance(space, gym.spaces.Box) and space.shape == (2,):
             rows = _STEERED
         else:
@@ -51,10 +50,6 @@ class Robot:
     def action(self, command: int) -> Any:
         """Return the environment's action for a command."""
         return command if self._discrete else self._box(*self.commands.velocities[command])
-
-    def keep_turning(self) -> Any:
-        """Return the environment's action for DA-SLAM's left turn."""
-        return 1 if self._discrete else self._box(*LEFT)
 
     @staticmethod
     def _box(v: float, w: float) -> NDArray[np.float32]:

@@ -36,6 +36,19 @@ def _in_sight(
     return True
 
 
+def in_sight(around: Surroundings, start: NDArray[np.float64], end: NDArray[np.float64], margin: float = 0.0) -> bool:
+    """Return whether the straight line between two points crosses no closed cell and keeps a clearance.
+
+    Args:
+        around: The surroundings.
+        start: (2,) or longer, x, y (m); not looked at itself.
+        end: (2,) or longer, x, y (m).
+        margin: Least clearance (m).
+    """
+    ends = np.asarray(start, np.float64)[:2], np.asarray(end, np.float64)[:2]
+    return bool(_in_sight(around.gap, around.closed, around.frame, *ends, margin))
+
+
 @njit(cache=True, nogil=True)
 def _nearest_point(path: NDArray[np.float64], position: NDArray[np.float64]) -> int:
     nearest, best = 0, np.inf
@@ -89,7 +102,7 @@ class PathFollower:
         commands: What the robot can do.
         margin: Clearance that every planned pose keeps (m). Smaller ones are tried where this finds nothing.
         least_margin: The smallest of these (m), in places that are narrow.
-        last_margin: What is risked (m) to get out of a place where ``least_margin`` leaves no way.
+        last_margin: What is risked (m) to get out of a place where the robot cannot even turn round.
         preferred: Clearance that is kept where there is room (m).
         lookahead: How far along the path commands are searched (m).
         reach: How near to the path's point is there (m); at the path's end ``end_reach``.
@@ -130,13 +143,15 @@ class PathFollower:
         """
         if len(self._queue) and self._leads_to(path, pose, around):
             return True
-        for margin, lookahead in (
+        attempts = [
             (self.margin, self.lookahead),
             (self.least_margin, self.lookahead),
             (self.least_margin, 2.0 * self.lookahead),  # past a place too narrow to end in
             (self.least_margin, 0.5 * self.lookahead),
-            (self.last_margin, 0.5 * self.lookahead),
-        ):
+        ]
+        if not self.can_loiter(pose, around):
+            attempts.append((self.last_margin, 0.5 * self.lookahead))
+        for margin, lookahead in attempts:
             sequence = self._towards(path, pose, around, margin, lookahead)
             if len(sequence):
                 self._queue, self._kept = sequence, min(margin, self.least_margin)

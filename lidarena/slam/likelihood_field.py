@@ -114,12 +114,19 @@ def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> int:
 
 
 @njit(cache=True, nogil=True, forceinline=True)
-def facing(cell: int, sector: int) -> float:
-    """The cell's value if its wall faces within about 100° of ``sector`` (≥ 0, taken modulo 16), else 0."""
-    return np.float64(cell >> 4 if ((cell + 4 - sector) & 15) <= 8 else 0)
+def facing_mask(sector: int) -> int:
+    """The sectors within about 100° of ``sector`` (any integer, taken modulo 16), as 16 bits."""
+    shift = (sector + 12) & (SECTORS - 1)
+    return ((0x1FF << shift) | (0x1FF >> (SECTORS - shift))) & 0xFFFF
 
 
-@njit(cache=True, nogil=True)
+@njit(cache=True, nogil=True, forceinline=True)
+def facing(cell: int, allowed: int) -> float:
+    """The cell's value if its wall faces one of the ``allowed`` sectors (bits), else 0; without a branch."""
+    return np.float64((cell >> 4) & -((allowed >> (cell & 15)) & 1))
+
+
+@njit(cache=True, nogil=True, forceinline=True)
 def field_at(tiles: NDArray[np.uint16], table: NDArray[np.int32], u: float, v: float, sector: int) -> float:
     """A field's value at column ``u``, row ``v`` (cell centres at integers) of walls that face ``sector``; bilinear.
 
@@ -128,16 +135,16 @@ def field_at(tiles: NDArray[np.uint16], table: NDArray[np.int32], u: float, v: f
         table: (A, B) one particle's table.
         u: Column.
         v: Row.
-        sector: As in ``facing``.
+        sector: Direction that the point's own wall faces.
     """
     if not (u >= 0.0 and v >= 0.0 and u < table.shape[1] * TILE - 1.0 and v < table.shape[0] * TILE - 1.0):
         return 0.0
     column, row = np.int64(u), np.int64(v)
-    tile = tiles[table[row >> TILE_BITS, column >> TILE_BITS]]
-    c, r = (column & (TILE - 1)) + 1, (row & (TILE - 1)) + 1
-    a, b = u - column, v - row
-    f00, f01 = facing(np.int64(tile[r, c]), sector), facing(np.int64(tile[r, c + 1]), sector)
-    f10, f11 = facing(np.int64(tile[r + 1, c]), sector), facing(np.int64(tile[r + 1, c + 1]), sector)
+    t = np.uint64(table[np.uint64(row >> TILE_BITS), np.uint64(column >> TILE_BITS)])
+    c, r, one = np.uint64((column & (TILE - 1)) + 1), np.uint64((row & (TILE - 1)) + 1), np.uint64(1)
+    a, b, allowed = u - column, v - row, facing_mask(sector)
+    f00, f01 = facing(np.int64(tiles[t, r, c]), allowed), facing(np.int64(tiles[t, r, c + one]), allowed)
+    f10, f11 = facing(np.int64(tiles[t, r + one, c]), allowed), facing(np.int64(tiles[t, r + one, c + one]), allowed)
     low, high = f00 + a * (f01 - f00), f10 + a * (f11 - f10)
     return (low + b * (high - low)) / FULL
 

@@ -90,27 +90,74 @@ def trace_scan(
     counts, occupancy = maps.counts[world], maps.occupancy[world]
     wanted = maps.wanted[maps.plan[world]]
     rows, columns = occupancy.shape
+    c0, r0 = int(math.floor(start_u)), int(math.floor(start_v))
+    inside = 0 <= c0 < columns and 0 <= r0 < rows
     change = 0
     for k in range(scan.shape[0]):
         reach = min(scan[k], max_range) / resolution
-        du = reach * (directions[0, k] * cos - directions[1, k] * sin)
-        dv = reach * (directions[0, k] * sin + directions[1, k] * cos)
-        steps = int(max(abs(du), abs(dv))) + 1
-        u, v = int(start_u * _ONE), int(start_v * _ONE)
-        step_u, step_v = int(du / steps * _ONE), int(dv / steps * _ONE)
-        end_c, end_r = (u + steps * step_u) >> 16, (v + steps * step_v) >> 16
-        for _ in range(steps):
-            c, r = u >> 16, v >> 16
-            u, v = u + step_u, v + step_v
-            if not (0 <= c < columns and 0 <= r < rows) or (c == end_c and r == end_r):
-                continue
-            counts[np.uint64(r), np.uint64(c)] += sign
-            if sign < 0 or occupancy[np.uint64(r), np.uint64(c)] != 0:  # one more passing beam leaves a free cell free
-                change += _reassess(counts, occupancy, wanted, r, c)
-        if 0 <= end_c < columns and 0 <= end_r < rows:
-            counts[end_r, end_c] += sign * (1 + (_HIT if scan[k] < max_range else 0))
-            change += _reassess(counts, occupancy, wanted, end_r, end_c)
+        c1 = int(math.floor(start_u + reach * (directions[0, k] * cos - directions[1, k] * sin)))
+        r1 = int(math.floor(start_v + reach * (directions[0, k] * sin + directions[1, k] * cos)))
+        hit = scan[k] < max_range
+        if inside and 0 <= c1 < columns and 0 <= r1 < rows:
+            change += _pass_cells(counts, occupancy, wanted, c0, r0, c1, r1, sign)
+            counts[r1, c1] += sign * (1 + _HIT) if hit else sign
+            change += _reassess(counts, occupancy, wanted, r1, c1)
+        else:
+            change += _pass_clipped(counts, occupancy, wanted, c0, r0, c1, r1, sign)
     maps.covered[world] += change
+
+
+@njit(cache=True, nogil=True, forceinline=True)
+def _pass_cells(
+    counts: NDArray[np.int64],
+    occupancy: NDArray[np.int8],
+    wanted: NDArray[np.uint8],
+    c0: int,
+    r0: int,
+    c1: int,
+    r1: int,
+    sign: int,
+) -> int:
+    """Count a beam in every cell of the line from (r0, c0) up to, without, (r1, c1), both inside the grid.
+
+    The innermost loop of all: one step along the longer axis, in fixed point, without a test that could be made outside.
+    """
+    dc, dr = c1 - c0, r1 - r0
+    steps = max(abs(dc), abs(dr))
+    if steps == 0:
+        return 0
+    u, v = c0 * _ONE + _ONE // 2, r0 * _ONE + _ONE // 2
+    step_u, step_v = dc * _ONE // steps, dr * _ONE // steps
+    change = 0
+    for _ in range(steps):
+        c, r = np.uint64(u >> 16), np.uint64(v >> 16)
+        u, v = u + step_u, v + step_v
+        counts[r, c] += sign
+        if sign < 0 or occupancy[r, c] != 0:  # one more passing beam leaves a free cell free
+            change += _reassess(counts, occupancy, wanted, np.int64(r), np.int64(c))
+    return change
+
+
+@njit(cache=True, nogil=True)
+def _pass_clipped(
+    counts: NDArray[np.int64],
+    occupancy: NDArray[np.int8],
+    wanted: NDArray[np.uint8],
+    c0: int,
+    r0: int,
+    c1: int,
+    r1: int,
+    sign: int,
+) -> int:
+    """The same for a line that leaves the grid: only its cells inside count."""
+    steps = max(abs(c1 - c0), abs(r1 - r0))
+    change = 0
+    for k in range(steps):
+        c, r = c0 + (c1 - c0) * k // steps, r0 + (r1 - r0) * k // steps
+        if 0 <= c < occupancy.shape[1] and 0 <= r < occupancy.shape[0]:
+            counts[r, c] += sign
+            change += _reassess(counts, occupancy, wanted, r, c)
+    return change
 
 
 @njit(cache=True, nogil=True)

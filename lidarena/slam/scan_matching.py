@@ -12,7 +12,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing
+from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing, facing_mask
 
 
 _OVER_RELAXATION = 1.4
@@ -29,7 +29,7 @@ class MatcherParameters(NamedTuple):
         deviation: s, standard deviation of a point's distance to its wall, sensor and map together [m].
     """
 
-    points: int = 72
+    points: int = 56
     iterations: int = 8
     tolerance: float = 1e-3
     deviation: float = 0.02
@@ -94,15 +94,16 @@ def _linearise(
     """Sum Welsch-weighted normal equations into ``hessian`` (3, 3) and ``gradient`` (3,); returns Σ (1 − f).
 
     Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous, where a
-    bilinear one jumps from cell to cell and keeps Gauss-Newton from settling. Unsigned indices spare the test for negative
-    ones.
+    bilinear one jumps from cell to cell and keeps Gauss-Newton from settling. Flat, unsigned indices spare the tests for
+    negative ones.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     per_cell = 1.0 / resolution
     start_u, start_v = (pose[0] - x0) * per_cell, (pose[1] - y0) * per_cell
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
-    end_u, end_v = float(table.shape[1] * TILE), float(table.shape[0] * TILE)
-    one, mask, bits = np.uint64(1), np.uint64(TILE - 1), np.uint64(TILE_BITS)
+    tiles_across = table.shape[1]
+    end_u, end_v = float(tiles_across * TILE), float(table.shape[0] * TILE)
+    cells, names, side = tiles.reshape(-1), table.reshape(-1), TILE + 2
     hxx = hxy = hyy = hxt = hyt = htt = gx = gy = gt = missed = 0.0
     for i in range(points.shape[0]):
         px, py = cos * points[i, 0] - sin * points[i, 1], sin * points[i, 0] + cos * points[i, 1]
@@ -110,14 +111,14 @@ def _linearise(
         if not (u >= 0.0 and v >= 0.0 and u < end_u and v < end_v):
             missed += 1.0
             continue
-        c, r = np.uint64(np.int64(u)), np.uint64(np.int64(v))
-        a, b = u - np.int64(u) - 0.5, v - np.int64(v) - 0.5  # from the cell's centre, ±½
-        sector = np.int64(turn + points[i, 4])
-        tile = tiles[np.uint64(table[r >> bits, c >> bits])]
-        c, r = (c & mask) + one, (r & mask) + one
-        low, low_slope = _spline(tile[r - one, c - one], tile[r - one, c], tile[r - one, c + one], a, sector)
-        mid, mid_slope = _spline(tile[r, c - one], tile[r, c], tile[r, c + one], a, sector)
-        high, high_slope = _spline(tile[r + one, c - one], tile[r + one, c], tile[r + one, c + one], a, sector)
+        c, r = np.int64(u), np.int64(v)
+        a, b = u - c - 0.5, v - r - 0.5  # from the cell's centre, ±½
+        allowed = facing_mask(np.int64(turn + points[i, 4]))
+        tile = np.int64(names[np.uint64((r >> TILE_BITS) * tiles_across + (c >> TILE_BITS))])
+        corner = tile * (side * side) + (r & (TILE - 1)) * side + (c & (TILE - 1))
+        low, low_slope = _spline(cells, corner, a, allowed)
+        mid, mid_slope = _spline(cells, corner + side, a, allowed)
+        high, high_slope = _spline(cells, corner + 2 * side, a, allowed)
         before, at, after = 0.5 * (0.5 - b) ** 2, 0.75 - b * b, 0.5 * (0.5 + b) ** 2
         f = (before * low + at * mid + after * high) * (1.0 / FULL)
         missed += 1.0 - f
@@ -137,10 +138,13 @@ def _linearise(
     return missed
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def _spline(before: int, at: int, after: int, a: float, sector: int) -> tuple[float, float]:
-    """Quadratic B-spline through a row of three cells at ``a`` ∈ ±½ from the middle one, and its slope per cell."""
-    f0, f1, f2 = facing(np.int64(before), sector), facing(np.int64(at), sector), facing(np.int64(after), sector)
+@njit(cache=True, nogil=True, forceinline=True, fastmath={"reassoc", "contract", "nsz", "arcp"})
+def _spline(cells: NDArray[np.uint16], first: int, a: float, allowed: int) -> tuple[float, float]:
+    """Quadratic B-spline through three cells from ``first`` on, at ``a`` ∈ ±½ from the middle one, and its slope per cell."""
+    k, one, two = np.uint64(first), np.uint64(1), np.uint64(2)
+    f0 = facing(np.int64(cells[k]), allowed)
+    f1 = facing(np.int64(cells[k + one]), allowed)
+    f2 = facing(np.int64(cells[k + two]), allowed)
     value = 0.5 * (0.5 - a) ** 2 * f0 + (0.75 - a * a) * f1 + 0.5 * (0.5 + a) ** 2 * f2
     return value, (a - 0.5) * f0 - 2.0 * a * f1 + (a + 0.5) * f2
 

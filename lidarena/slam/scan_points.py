@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import SECTORS
 
-SPACING = 0.04
-"""Beams are averaged over this length of wall [m]; a cell is 0.05 m, more points would say nothing new."""
+SPACING = 0.05
+"""Beams are averaged over this length of wall [m]; a cell's side, more points would say nothing new."""
 JUMP = 0.2
 """Consecutive points farther apart than this belong to different surfaces [m]."""
 NORMAL_WINDOW = 0.16

@@ -81,15 +81,17 @@ class Physics:
         travel = closing * duration * np.abs(commands[:, :, 0]).max(axis=1)
         near = (clearance.min(axis=1) < self.spec.radius + travel + _MARGIN).tolist()
         rows: list[list[list[float]]] = commands.tolist()
+        headings: list[list[list[float]]] = self.poses.tolist()
         for world, space in enumerate(self._spaces):
             bodies = self._bodies[world]
             if near[world]:
                 self._push(space, bodies, rows[world], duration)
             else:
-                for body, (speed, rate) in zip(bodies, rows[world], strict=True):
-                    _set_chord(body, speed, rate, duration)
+                for body, (speed, rate), pose in zip(bodies, rows[world], headings[world], strict=True):
+                    _set_chord(body, pose[2], speed, rate, duration)
                 space.step(duration)
-            self._read_poses(world, bodies)
+            headings[world] = [_pose_of(body) for body in bodies]
+        self.poses[:] = headings
 
     def _push(
         self, space: pymunk.Space, bodies: list[pymunk.Body], commands: list[list[float]], duration: float
@@ -108,12 +110,6 @@ class Physics:
         for body in bodies:
             body.velocity_func = pymunk.Body.update_velocity
 
-    def _read_poses(self, world: int, bodies: list[pymunk.Body]) -> None:
-        for r, body in enumerate(bodies):
-            if abs(body.angle) > math.pi:  # a restored body starts from the wrapped heading: keep the same bits
-                body.angle = math.remainder(body.angle, 2.0 * math.pi)
-            self.poses[world, r] = (*body.position, body.angle)
-
     def _add_robot(self, space: pymunk.Space, pose: Pose) -> pymunk.Body:
         body = pymunk.Body(self.spec.mass, pymunk.moment_for_circle(self.spec.mass, 0.0, self.spec.radius))
         body.position = (float(pose[0]), float(pose[1]))
@@ -124,18 +120,26 @@ class Physics:
         return body
 
 
-def _set_chord(body: pymunk.Body, speed: float, rate: float, dt: float) -> None:
-    """Give a body the velocity that leads along the chord of its next arc."""
+def _pose_of(body: pymunk.Body) -> list[float]:
+    x, y = body.position
+    angle = body.angle
+    if abs(angle) > math.pi:  # a restored body starts from the wrapped heading: keep the same bits
+        body.angle = angle = math.remainder(angle, 2.0 * math.pi)
+    return [x, y, angle]
+
+
+def _set_chord(body: pymunk.Body, heading: float, speed: float, rate: float, dt: float) -> None:
+    """Give a body the velocity that leads along the chord of its next arc from ``heading``."""
     half = 0.5 * rate * dt
     chord = speed * (math.sin(half) / half if half != 0.0 else 1.0)
-    heading = body.angle + half
+    heading += half
     body.velocity = (chord * math.cos(heading), chord * math.sin(heading))
     body.angular_velocity = rate
 
 
 def _turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
     """pymunk's velocity callback: what the wheels do, before contacts have their say."""
-    _set_chord(body, speed, rate, dt)
+    _set_chord(body, body.angle, speed, rate, dt)
 
 
 def _build_space(plan: Floorplan) -> pymunk.Space:

@@ -36,6 +36,15 @@ def test_a_stopped_training_goes_on_to_the_bit(
     assert (resumed / "policy.safetensors").read_bytes() == (straight / "policy.safetensors").read_bytes()
 
 
+def test_real_worlds_go_on_to_the_bit(tmp_path: Path) -> None:
+    overrides = ("env.id=lidarena/Env1-v0", "env.keywords={particles: 5, max_episode_steps: 20}", "num_envs=2")
+    straight = train(small(tmp_path / "straight", *overrides, "total_steps=96"), progress=False)
+    stopped = train(small(tmp_path / "stopped", *overrides, "total_steps=32"), progress=False)
+    resumed = train(small(stopped, *overrides, "total_steps=96"), resume=stopped, progress=False)
+    assert equal(weights(resumed), weights(straight)) and curve(resumed) == curve(straight)
+    assert curve(resumed)[-1]["completeness"]
+
+
 def test_a_killed_training_goes_on_from_its_last_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     straight = train(small(tmp_path / "straight"), progress=False)
     with monkeypatch.context() as patch:

@@ -16,6 +16,7 @@ import lidarena.agents
 from lidarena.agents import TrainingStopped, atomic_files, load, load_config, train
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.world.refusals import ConfigError
+from tests.agents.fake_batch import RestorableLineBatch
 from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
 
 SUFFIXES = {".yaml", ".json", ".safetensors", ".csv", ".npz"}
@@ -82,6 +83,25 @@ def test_settings_reach_ppo(tmp_path: Path) -> None:
         "net_arch": [8],
         "activation": "relu",
     }
+
+
+def test_worlds_cannot_change_the_threads_of_the_learner(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from stable_baselines3 import PPO
+
+    step, learn, threads = RestorableLineBatch.step, PPO.train, []
+
+    def numba_starts_its_threads(self: RestorableLineBatch, actions: Any) -> Any:
+        torch.set_num_threads(2)
+        return step(self, actions)
+
+    def count_threads(self: PPO) -> None:
+        threads.append(torch.get_num_threads())
+        learn(self)
+
+    monkeypatch.setattr(RestorableLineBatch, "step", numba_starts_its_threads)
+    monkeypatch.setattr(PPO, "train", count_threads)
+    train(small(tmp_path / "run", "total_steps=128"), progress=False)
+    assert threads == [1, 1]
 
 
 def test_dict_observations_are_trained_on(tmp_path: Path) -> None:

@@ -199,7 +199,7 @@ def test_what_is_dumped_is_loaded_again(tmp_path_factory: pytest.TempPathFactory
 
 
 def test_a_text_that_looks_like_a_number_stays_a_text(tmp_path: Path) -> None:
-    config = Config(seed=0, policies=["3e-4", "1e6", "7", "true", ".5E3"])
+    config = Config(seed=0, policies=["3e-4", "1e6", "7", "true", ".5E3", "\x85", "\u2028é"])
     assert load_config(dump_config(config, tmp_path / "config.yaml"), Config) == config
 
 

@@ -45,7 +45,7 @@ U_SHAPES = drawn(
     "#  ########  #",
     "#            #",
     "##############",
-    side=9,
+    side=16,
 )
 PILLARS = drawn(
     "################",
@@ -62,7 +62,7 @@ PILLARS = drawn(
 WORLDS = {
     "rooms": (ROOMS, (1.0, 1.0, 0.0)),
     "corridors": (CORRIDORS, (1.2, 6.8, 0.0)),
-    "u": (U_SHAPES, (2.0, 2.3, 1.0)),
+    "u": (U_SHAPES, (3.6, 4.1, 1.0)),
     "pillars": (PILLARS, (0.8, 0.8, 0.5)),
 }
 
@@ -111,7 +111,7 @@ def test_as_explore_lite_it_still_explores():
 def test_is_deterministic():
     traces = []
     for _ in range(2):
-        env = FakeExploration(U_SHAPES, (2.0, 2.3, 1.0))
+        env = FakeExploration(U_SHAPES, (3.6, 4.1, 1.0))
         explore(env, make("frontier", env), 300)
         traces.append(np.array(env.trace))
     np.testing.assert_array_equal(*traces)
@@ -181,6 +181,17 @@ def test_reads_nothing_but_map_pose_and_beams():
     for _ in range(30):
         poor = {key: info[key] for key in ("map", "resolution", "origin", "pose")}
         observation, *_, info = env.step(policy.act(observation, poor))
+
+
+def test_does_not_enter_a_corridor_in_which_it_could_not_turn_round():
+    """0.45 m are wide enough for driving, but a robot that cannot reverse must not find a dead end there."""
+    solid = drawn("############", "#   ########", "#          #", "#   ########", "############", side=9)
+    env = FakeExploration(solid, (1.0, 1.1, 3.0))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 1000)
+    assert policy.finished and not info["collision"]
+    assert env.least > 0.12
+    assert np.array(env.trace)[:, 0].max() < 2.4
 
 
 def test_gives_up_what_it_cannot_reach():

@@ -27,7 +27,6 @@ def test_discrete_actions_are_the_commands():
     robot = Robot(Env(DISCRETE))
     np.testing.assert_allclose(robot.commands.velocities, [[0.5, 0.0], [0.05, 0.3], [0.05, -0.3]])
     assert [robot.action(k) for k in range(3)] == [0, 1, 2]
-    assert robot.keep_turning() == 1
 
 
 def test_continuous_actions_stand_for_the_velocities():
@@ -36,8 +35,6 @@ def test_continuous_actions_stand_for_the_velocities():
         action = robot.action(k)
         assert BOX.contains(action)
         assert (0.25 * (action[0] + 1.0), action[1]) == pytest.approx((v, w), abs=1e-6)
-    turn = robot.keep_turning()
-    assert (0.25 * (turn[0] + 1.0), turn[1]) == pytest.approx((0.05, 0.3), abs=1e-6)
 
 
 def test_period_is_the_environments():
@@ -48,7 +45,9 @@ def test_period_is_the_environments():
     np.testing.assert_allclose(Robot(Env(DISCRETE, spec=spec)).commands.moves[0], [0.05, 0.0, 0.0])
 
 
-@pytest.mark.parametrize("space", [gym.spaces.Discrete(4), gym.spaces.Box(-1, 1, (3,)), gym.spaces.MultiDiscrete([3, 3])])
+@pytest.mark.parametrize(
+    "space", [gym.spaces.Discrete(4), gym.spaces.Box(-1, 1, (3,)), gym.spaces.MultiDiscrete([3, 3])]
+)
 def test_other_action_spaces_are_refused(space):
     with pytest.raises(ConfigError, match=r"Discrete\(3\) and a Box"):
         Robot(Env(space))

@@ -11,7 +11,9 @@ from lidarena.planning.frontiers import find_frontiers, nearest_cell
 from lidarena.world.refusals import ConfigError
 
 RES = 0.05
-maps = arrays(np.int8, st.tuples(st.integers(1, 10), st.integers(1, 10)), elements=st.sampled_from([-1, -1, 0, 0, 0, 100]))
+maps = arrays(
+    np.int8, st.tuples(st.integers(1, 10), st.integers(1, 10)), elements=st.sampled_from([-1, -1, 0, 0, 0, 100])
+)
 
 
 def picture(*rows):
@@ -38,7 +40,9 @@ def flood(cells, start, eight):
 def slow_frontiers(grid, start):
     """Sets of frontier cells that touch the free space of a free start, by the definition."""
     free = {tuple(cell) for cell in np.argwhere(grid == 0).tolist()}
-    edge = {tuple(cell) for cell in np.argwhere(grid < 0).tolist() if any(n in free for n in around(tuple(cell), False))}
+    edge = {
+        tuple(cell) for cell in np.argwhere(grid < 0).tolist() if any(n in free for n in around(tuple(cell), False))
+    }
     reached = flood(free, start, False)
     touching = {cell for cell in edge if any(n in reached for n in around(cell, False))}
     return {frozenset(flood(edge, cell, True)) for cell in touching}, reached

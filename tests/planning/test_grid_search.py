@@ -1,4 +1,5 @@
 import heapq
+import itertools
 import math
 
 import numpy as np
@@ -43,7 +44,9 @@ def problems(draw):
     rows, cols = draw(st.integers(1, 9)), draw(st.integers(1, 9))
     values = draw(
         st.lists(
-            st.sampled_from([math.inf, math.inf, 0.0, 0.5, 1.0, 1.0, 2.5, 7.0]), min_size=rows * cols, max_size=rows * cols
+            st.sampled_from([math.inf, math.inf, 0.0, 0.5, 1.0, 1.0, 2.5, 7.0]),
+            min_size=rows * cols,
+            max_size=rows * cols,
         )
     )
     cell = st.tuples(st.integers(0, rows - 1), st.integers(0, cols - 1))
@@ -74,8 +77,7 @@ def test_finds_the_cheapest_path(problem):
 def test_never_cuts_a_corner(problem):
     cost, start, goal, _ = problem
     path = find_path(cost, start, goal)
-    for (r0, c0), (r1, c1) in zip(path[:-1], path[1:], strict=True):
-        assert np.isfinite(cost[r0, c1]) and np.isfinite(cost[r1, c0]) or (r0, c0) == start or r0 == r1 or c0 == c1
+    for (r0, c0), (r1, c1) in itertools.pairwise(path):
         if r0 != r1 and c0 != c1:
             assert np.isfinite(cost[r0, c1]) and np.isfinite(cost[r1, c0])
 

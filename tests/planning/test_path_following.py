@@ -1,3 +1,4 @@
+import itertools
 import math
 
 import numpy as np
@@ -31,7 +32,9 @@ def carrot_of(around, path, pose, lookahead=1.5, margin=0.18):
 def drive(commands, occupancy, around, pose, goal, noise=0.0, steps=2000, replan=5):
     """Follow the planned path to the goal, planning every few commands; returns the poses and commands."""
     rng = np.random.default_rng(5)
-    path = around.points(find_path(inflate(occupancy, RES, Inflation(0.2, 0.6)), around.cell(*pose[:2]), around.cell(*goal)))
+    path = around.points(
+        find_path(inflate(occupancy, RES, Inflation(0.2, 0.6)), around.cell(*pose[:2]), around.cell(*goal))
+    )
     assert len(path)
     follower, here, trace, done = PathFollower(commands), np.array(pose, float), [], []
     for step in range(steps):
@@ -65,7 +68,7 @@ def test_does_not_swing_to_and_fro():
     for noise in (0.0, 0.002):
         _, done = drive(DISCRETE, occupancy, around, (1.2, 1.2, math.pi / 2), (6.0, 1.2), noise)
         turns = [command for command in done if command != 0]
-        flips = sum(a != b for a, b in zip(turns, turns[1:], strict=False))
+        flips = sum(a != b for a, b in itertools.pairwise(turns))
         assert flips <= 16  # the way has eight corners
 
 

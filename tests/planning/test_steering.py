@@ -52,7 +52,7 @@ def test_commands_are_exact_arcs():
     ],
 )
 def test_useless_commands_are_refused(velocities, period):
-    with pytest.raises(ConfigError, match="allowed|at least one"):
+    with pytest.raises(ConfigError, match=r"allowed|at least one"):
         Commands.of(velocities, period)
 
 
