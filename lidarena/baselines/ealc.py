@@ -27,7 +27,7 @@ class EalcPolicy(FrontierPolicy):
     A topological graph keeps where the robot has been, and how uncertain its pose was there. At every planning instant
     the poses of interest are the nodes that are near as the crow flies, far along the graph, and had less uncertainty
     than the robot has now. If there are any, the robot drives to the nearest and on along the nodes in the order in
-    which they were made, until its uncertainty is back at the level of the first. When no frontier is left, it visits
+    which they were made, until its uncertainty is back at the level of the first, or for ``retrace``. When no frontier is left, it visits
     once more, the last first, the nodes whose uncertainty exceeded the mean, and is finished.
 
     The paper prints "the entropy is higher than the entropy of x_t" for the nodes of interest. By that reading the
@@ -46,7 +46,8 @@ class EalcPolicy(FrontierPolicy):
         env: Any,
         *,
         near: float = 0.3,
-        far: float = 1.0,
+        far: float = 0.6,
+        retrace: float = 0.5,
         node_distance: float = 2.5,
         uncertainty: Uncertainty = "d_optimality",
         as_printed: bool = False,
@@ -61,6 +62,7 @@ class EalcPolicy(FrontierPolicy):
             env: The environment.
             near: Largest straight distance of a node of interest, as a share of the longer side of the known map.
             far: Least distance along the graph, as a share of the same.
+            retrace: How far to drive on along the nodes at most, as a share of the same; 0 = only to the first.
             node_distance: Distance between nodes (m).
             uncertainty: What is compared: ``info["d_optimality"]`` or ``info["entropy"]``.
             as_printed: Whether nodes of interest must have *more* uncertainty than the robot.
@@ -72,12 +74,12 @@ class EalcPolicy(FrontierPolicy):
         Raises:
             ConfigError: for an option out of range.
         """
-        for name, value in {"near": near, "far": far, "node_distance": node_distance}.items():
-            if not 0.0 < value < math.inf:
-                raise ConfigError(f"{name} = {value}, allowed are finite numbers > 0")
+        for name, value in {"near": near, "far": far, "retrace": retrace, "node_distance": node_distance}.items():
+            if not 0.0 <= value < math.inf:
+                raise ConfigError(f"{name} = {value}, allowed are finite numbers >= 0")
         if uncertainty not in get_args(Uncertainty):
             raise ConfigError(f"unknown uncertainty {uncertainty!r}{suggest(str(uncertainty), get_args(Uncertainty))}")
-        self._near, self._far, self._node_distance = near, far, node_distance
+        self._near, self._far, self._retrace, self._node_distance = near, far, retrace, node_distance
         self._key, self._as_printed, self._revisits = uncertainty, as_printed, revisit
         super().__init__(
             env,
@@ -125,12 +127,22 @@ class EalcPolicy(FrontierPolicy):
         if interesting:
             first = min(interesting, key=lambda node: math.dist(self.graph.positions[node], self.driver.pose[:2]))
             self._visited.add(first)
-            self._tour = list(range(first, len(self.graph.positions)))
+            self._tour = self._track(first, self._retrace * _extent(terrain))
             self._level = self.graph.uncertainties[first]
+
+    def _track(self, first: int, length: float) -> list[int]:
+        """``first`` and the nodes made after it, as far as ``length`` (m)."""
+        track = [first]
+        for node in range(first + 1, len(self.graph.positions)):
+            length -= math.dist(self.graph.positions[node], self.graph.positions[node - 1])
+            if length < 0.0:
+                break
+            track.append(node)
+        return track
 
     def nodes_of_interest(self, terrain: Terrain) -> list[int]:
         """Return the nodes that are near but far along the graph, and more certain than the robot is now."""
-        extent = max(terrain.occupancy.shape) * terrain.around.resolution
+        extent = _extent(terrain)
         travelled = self.graph.distances()
         return [
             node
@@ -150,7 +162,10 @@ class EalcPolicy(FrontierPolicy):
         """Drive on to the next node of the tour; whether there is one."""
         while self._tour:
             node = self._tour[0]
-            if math.dist(self.graph.positions[node], self.driver.pose[:2]) <= self.driver.arrival + _slack(terrain):
+            if (
+                math.dist(self.graph.positions[node], self.driver.pose[:2])
+                <= self.driver.arrival + terrain.around.resolution
+            ):
                 self._tour.pop(0)
                 if self._uncertainty <= self._level:
                     self._tour.clear()
@@ -174,6 +189,6 @@ class EalcPolicy(FrontierPolicy):
         return not self.driver.arrived
 
 
-def _slack(terrain: Terrain) -> float:
-    """How far the cell that stands for a node may lie from the node (m)."""
-    return terrain.around.resolution
+def _extent(terrain: Terrain) -> float:
+    """The longer side of the known map (m)."""
+    return max(terrain.occupancy.shape) * terrain.around.resolution

@@ -2,5 +2,6 @@
 
 from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import register_all
+from lidarena.envs.worker_threads import set_num_threads
 
-__all__ = ["BatchedExploration", "ExplorationEnv", "register_all"]
+__all__ = ["BatchedExploration", "ExplorationEnv", "register_all", "set_num_threads"]

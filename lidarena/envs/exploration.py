@@ -14,6 +14,7 @@ from lidarena.envs.exploration_episodes import ExplorationEpisodes, Info, of_wor
 from lidarena.envs.exploration_options import ExplorationOptions
 from lidarena.envs.exploration_picture import draw_exploration
 from lidarena.envs.generator_state import generator_from_words, generator_words
+from lidarena.world.floorplan import Floorplan
 from lidarena.world.refusals import ConfigError
 
 
@@ -131,6 +132,12 @@ class ExplorationEnv(gym.Env[Any, Any]):
         info["map"] = info["map"].copy()
         info["map"].flags.writeable = False
         return info
+
+    @property
+    def floorplan(self) -> Floorplan:
+        """The world's true floor plan, for pictures; no policy may look at it."""
+        core = self._episodes.core
+        return core.plans[int(core.plan[0])]
 
     def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
         """Picture (height, width, 3) of the truth and of what the filter believes; None without ``render_mode``.

@@ -1,8 +1,8 @@
 """Running compiled kernels on disjoint ranges of worlds at once.
 
 The kernels release the interpreter lock, so plain threads serve; unlike an OpenMP region they may be started in a process
-that was forked, they compile in half the time, and a batch of one calls its kernel directly. The number of threads is
-numba's (``numba.set_num_threads``, ``NUMBA_NUM_THREADS``).
+that was forked, they compile in half the time, and a batch of one calls its kernel directly. (Asking numba for its number of
+threads would start OpenMP and, with it, undo the number of threads that PyTorch was given.)
 """
 
 import os
@@ -10,15 +10,30 @@ from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
 
-import numba
+from numba import config
+
+from lidarena.world.refusals import ConfigError
 
 _CHUNKS_PER_THREAD = 2
 """Worlds differ in cost; smaller ranges keep the threads busy to the end."""
+_threads = int(config.NUMBA_NUM_THREADS)
+
+
+def set_num_threads(count: int) -> None:
+    """Set how many threads step a batch's worlds; at first all cores, or ``NUMBA_NUM_THREADS``. No result depends on it.
+
+    Raises:
+        ConfigError: ``count`` is not a whole number of at least 1.
+    """
+    global _threads
+    if not isinstance(count, int) or count < 1:
+        raise ConfigError(f"num_threads = {count!r} must be a whole number of at least 1")
+    _threads = count
 
 
 def for_ranges(count: int, work: Callable[[int, int], None]) -> None:
-    """Call ``work(first, last)`` for ranges that together cover 0 … count - 1, on numba's number of threads."""
-    threads = min(int(numba.get_num_threads()), count)
+    """Call ``work(first, last)`` for ranges that together cover 0 … count - 1, on the threads of ``set_num_threads``."""
+    threads = min(_threads, count)
     if threads <= 1:
         work(0, count)
         return

@@ -31,8 +31,24 @@ TILE = 1 << TILE_BITS
 around any of its own are at hand."""
 _REACH = 4
 """Cells from an end point up to which it is stamped; 0.2 m is 2.5 σ."""
+_SHIFTS = 8
+"""Places within a cell, along each axis, for which the stamped Gaussian is kept; they are 6 mm apart."""
+CELL = 0.05
+"""Side of the cells that the fields are made of [m]; gmapping's δ."""
 _FRESH = 0.75
 """A point is stamped where the field is lower: no wall is known within about 6 cm."""
+
+
+def _bumps() -> NDArray[np.uint16]:
+    """Stamps (row shift, column shift, row, column): the Gaussian in the upper 12 bits, room for a direction in the lower 4."""
+    shift = (np.arange(_SHIFTS) + 0.5) / _SHIFTS - 0.5
+    away = np.arange(-_REACH, _REACH + 1)[None, :] - shift[:, None]
+    line = np.exp(-0.5 * (away * CELL / SIGMA) ** 2)
+    bump = FULL * line[:, None, :, None] * line[None, :, None, :]
+    return (np.round(bump).astype(np.uint16) << 4).astype(np.uint16)
+
+
+_BUMPS = _bumps()
 
 
 class Fields(NamedTuple):
@@ -167,42 +183,52 @@ def register_points(
         particle: Particle.
         pose: (3,) x, y, theta.
         origin: (2,) lower-left corner of the grid [m].
-        resolution: [m].
+        resolution: Side of a cell [m]; the stamps are drawn for ``CELL``.
         points: (n, 5) as ``scan_points.extract_points`` gives them.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
     tiles, table = fields.tiles[w], fields.table[w, particle]
+    cells = tiles.reshape(-1)
     for i in range(points.shape[0]):
         x = pose[0] + cos * points[i, 0] - sin * points[i, 1]
         y = pose[1] + sin * points[i, 0] + cos * points[i, 1]
         u, v = (x - origin[0]) / resolution - 0.5, (y - origin[1]) / resolution - 0.5
         sector = np.int64(turn + points[i, 4])
         if field_at(tiles, table, u, v, sector) < _FRESH:
-            _stamp(fields, w, particle, u, v, sector & (SECTORS - 1), resolution)
+            _stamp(fields, cells, w, particle, u, v, sector & (SECTORS - 1))
 
 
 @njit(cache=True, nogil=True)
-def _stamp(fields: Fields, w: int, particle: int, u: float, v: float, sector: int, resolution: float) -> None:
-    """Raise the cells around (u, v), also where a tile's rim repeats them, to the Gaussian of their distance to it."""
+def _stamp(
+    fields: Fields,
+    cells: NDArray[np.uint16],
+    w: int,
+    particle: int,
+    u: float,
+    v: float,
+    sector: int,
+) -> None:
+    """Raise the cells around (u, v), also where a tile's rim repeats them, to the Gaussian of their distance to it.
+
+    ``cells`` is world w's tiles in one row; the Gaussian is looked up at the nearest of ``_SHIFTS``² places within a cell.
+    """
     a_count, b_count = fields.table.shape[2], fields.table.shape[3]
     column, row = int(math.floor(u + 0.5)), int(math.floor(v + 0.5))
     if not (0 <= column < b_count * TILE and 0 <= row < a_count * TILE):
         return
-    c0, c1 = max(column - _REACH, 0), min(column + _REACH + 1, b_count * TILE)
-    r0, r1 = max(row - _REACH, 0), min(row + _REACH + 1, a_count * TILE)
-    factor = -0.5 * (resolution / SIGMA) ** 2
-    across, along = np.empty(2 * _REACH + 1), np.empty(2 * _REACH + 1)
-    for c in range(c0, c1):
-        across[c - c0] = math.exp(factor * (c - u) ** 2)
-    for r in range(r0, r1):
-        along[r - r0] = FULL * math.exp(factor * (r - v) ** 2)
+    bump = _BUMPS[np.int64((v - row + 0.5) * _SHIFTS), np.int64((u - column + 0.5) * _SHIFTS)]
+    left_most, lowest = column - _REACH, row - _REACH
+    c0, c1 = max(left_most, 0), min(column + _REACH + 1, b_count * TILE)
+    r0, r1 = max(lowest, 0), min(row + _REACH + 1, a_count * TILE)
+    side = TILE + 2
     for a in range(max((r0 - 1) >> TILE_BITS, 0), min((r1 >> TILE_BITS) + 1, a_count)):
         for b in range(max((c0 - 1) >> TILE_BITS, 0), min((c1 >> TILE_BITS) + 1, b_count)):
-            tile = fields.tiles[w, _own_tile(fields, w, particle, a, b)]
+            start = _own_tile(fields, w, particle, a, b) * side * side
             top, left = a * TILE - 1, b * TILE - 1  # the cell that the tile's rim begins with
-            for r in range(max(r0, top), min(r1, top + TILE + 2)):
-                for c in range(max(c0, left), min(c1, left + TILE + 2)):
-                    value = int(along[r - r0] * across[c - c0] + 0.5)
-                    if value > tile[r - top, c - left] >> 4:
-                        tile[r - top, c - left] = (value << 4) | sector
+            for r in range(max(r0, top), min(r1, top + side)):
+                line = start + (r - top) * side - left
+                for c in range(max(c0, left), min(c1, left + side)):
+                    k, value = np.uint64(line + c), bump[np.uint64(r - lowest), np.uint64(c - left_most)]
+                    old = cells[k]
+                    cells[k] = value | sector if value > (old | 15) else old

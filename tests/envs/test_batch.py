@@ -3,12 +3,12 @@
 from typing import Any
 
 import gymnasium as gym
-import numba
 import numpy as np
 import pytest
+from numba import config
 
 import lidarena  # noqa: F401
-from lidarena.envs import BatchedExploration
+from lidarena.envs import BatchedExploration, set_num_threads
 from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.refusals import ConfigError
 
@@ -80,13 +80,30 @@ def test_world_i_of_any_batch_equals_the_single_environment_with_its_seed(keywor
 
 
 def test_the_number_of_threads_changes_no_bit() -> None:
-    most = numba.get_num_threads()
-    numba.set_num_threads(1)
     try:
+        set_num_threads(1)
         single = together(7, {})
+        set_num_threads(3)
+        assert together(7, {}) == single
     finally:
-        numba.set_num_threads(most)
-    assert together(7, {}) == single
+        set_num_threads(config.NUMBA_NUM_THREADS)
+
+
+def test_stepping_leaves_pytorchs_threads_alone() -> None:
+    import torch
+
+    before = torch.get_num_threads()
+    torch.set_num_threads(1)
+    try:
+        together(4, {"slam": "truth"})
+        assert torch.get_num_threads() == 1
+    finally:
+        torch.set_num_threads(before)
+
+
+def test_the_number_of_threads_is_checked() -> None:
+    with pytest.raises(ConfigError, match="num_threads"):
+        set_num_threads(0)
 
 
 def test_a_saved_batch_continues_to_the_bit() -> None:
