@@ -19,7 +19,7 @@ from lidarena.planning.frontiers import nearest_cell
 from lidarena.planning.grid_search import find_path
 from lidarena.planning.inflation import Inflation, clearance, inflate, open_start
 from lidarena.planning.path_following import PathFollower, blocked_ahead
-from lidarena.planning.steering import Surroundings
+from lidarena.planning.surroundings import Surroundings
 
 _NEARBY = 1.2  # half the side of the window that is looked at before every command (m)
 _ESCAPE = 0.6  # how far around a robot in the lethal zone cells are opened (m)

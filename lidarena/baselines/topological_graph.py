@@ -7,8 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.planning.path_following import in_sight
-from lidarena.planning.steering import Surroundings
+from lidarena.planning.surroundings import Surroundings, in_sight
 
 
 @dataclass

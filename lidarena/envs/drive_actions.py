@@ -36,11 +36,15 @@ def commands_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
             hint = "; convert it to an integer" if whole else ""
             raise ActionError(f"action {_show(actions, worlds)} is not one of the whole numbers 0, 1, 2{hint}")
         if ((values < 0) | (values >= len(COMMANDS))).any():
-            raise ActionError(f"action {_show(actions, worlds)} is out of range; 0 (forward), 1 (left), 2 (right) are allowed")
+            raise ActionError(
+                f"action {_show(actions, worlds)} is out of range; 0 (forward), 1 (left), 2 (right) are allowed"
+            )
         commands: NDArray[np.float64] = COMMANDS[values]
         return commands
     if values.shape != (worlds, 2) or values.dtype.kind not in "iuf":
-        raise ActionError(f"action {_show(actions, worlds)} is not a pair of numbers, speed and turn rate, from -1 to 1")
+        raise ActionError(
+            f"action {_show(actions, worlds)} is not a pair of numbers, speed and turn rate, from -1 to 1"
+        )
     numbers = values.astype(np.float64)
     if not (np.abs(numbers) <= 1.0).all():
         raise ActionError(f"action {_show(actions, worlds)} is NaN or out of range; numbers from -1 to 1 are allowed")

@@ -120,7 +120,9 @@ class ExplorationEnv(gym.Env[Any, Any]):
             ResetNeeded: The environment was not reset, or its episode has ended.
         """
         if not self._running:
-            raise ResetNeeded("step() needs a running episode; call reset() first, and again after an episode has ended")
+            raise ResetNeeded(
+                "step() needs a running episode; call reset() first, and again after an episode has ended"
+            )
         rewards, terminated, truncated = self._episodes.step([action])
         self._running = not (terminated[0] or truncated[0])
         observation = self._episodes.observer.pick(self._episodes.observe(), 0)
@@ -188,7 +190,9 @@ class BatchedExploration(VectorEnv[Any, Any, Any]):
         self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[Any, Info]:
         """Begin an episode in every world; a single seed ``s`` gives world ``i`` the seed ``s + i``."""
-        seeds = [None if seed is None else seed + i for i in range(self.num_envs)] if not isinstance(seed, list) else seed
+        seeds = (
+            [None if seed is None else seed + i for i in range(self.num_envs)] if not isinstance(seed, list) else seed
+        )
         if len(seeds) != self.num_envs:
             raise ConfigError(f"{len(seeds)} seeds were given for {self.num_envs} worlds; one for each is needed")
         if not self._generators:

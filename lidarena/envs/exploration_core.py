@@ -151,7 +151,15 @@ class ExplorationCore:
     def _sense(self, first: int, last: int) -> None:
         reach = self.beam.max_range
         cast_beams(
-            first, last, self.physics.poses, self.plan, 0.0, self.lidar.scenery, self.lidar.directions, reach, self.ranges
+            first,
+            last,
+            self.physics.poses,
+            self.plan,
+            0.0,
+            self.lidar.scenery,
+            self.lidar.directions,
+            reach,
+            self.ranges,
         )
         add_range_noise(first, last, self.beam.noise, reach, self.streams, self.ranges, self.scans)
         self.collision[first:last] = self.ranges[first:last, 0].min(axis=1) < START_CLEARANCE

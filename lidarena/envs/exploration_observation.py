@@ -5,10 +5,10 @@ from typing import Any, Protocol
 
 import gymnasium as gym
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
+from lidarena.world.kernels import leaf
 
 FRONT_BEAMS = (0, 45, 90, 315, 270)
 """Beams of the paper's observation: 0, 45, 90, -45 and -90 degrees."""
@@ -118,7 +118,7 @@ def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:
     return np.clip(core.criteria[:, 1] / most, 0.0, 1.0)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def crop_maps(
     occupancy: NDArray[np.int8], origins: NDArray[np.float64], poses: NDArray[np.float64], out: NDArray[np.uint8]
 ) -> None:

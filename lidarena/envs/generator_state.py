@@ -10,7 +10,14 @@ def generator_words(rng: np.random.Generator) -> NDArray[np.uint64]:
     """State of a PCG64 generator as six words (6,): state and increment (high, low), and its spare half word."""
     state = rng.bit_generator.state
     value, increment = state["state"]["state"], state["state"]["inc"]
-    words = [value // _WORD, value % _WORD, increment // _WORD, increment % _WORD, state["has_uint32"], state["uinteger"]]
+    words = [
+        value // _WORD,
+        value % _WORD,
+        increment // _WORD,
+        increment % _WORD,
+        state["has_uint32"],
+        state["uinteger"],
+    ]
     return np.array(words, dtype=np.uint64)
 
 

@@ -8,7 +8,9 @@ from lidarena.envs.exploration import ExplorationEnv
 
 EPISODE_STEPS = 1000
 """The paper's training cap."""
-EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {"lidarena/Exploration-v0": "willow_lobby"}
+EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {
+    "lidarena/Exploration-v0": "willow_lobby"
+}
 
 
 def make_single(max_episode_steps: int | None = None, **keywords: Any) -> ExplorationEnv:

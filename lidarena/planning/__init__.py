@@ -1,1 +1,1 @@
-"""TODO."""
+"""Planning on arrays: grid search, inflation, frontiers, steering and path following."""

@@ -13,40 +13,11 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
-from lidarena.planning.steering import Commands, Surroundings, gap_at, loiter_gap, move, steer, tightest
+from lidarena.planning.steering import Commands, loiter_gap, move, steer, tightest
+from lidarena.planning.surroundings import Surroundings, gap_at, line_is_free
 
 _SHORTEST_CARROT = 0.4  # the carrot lies at least so far ahead on the path, in sight or not (m)
 _SHORTEST_LOOK = 0.2  # nearer to the robot a path is not checked (m)
-
-
-@njit(cache=True, nogil=True)
-def _in_sight(
-    gap: NDArray[np.float32],
-    closed: NDArray[np.bool_],
-    frame: NDArray[np.float64],
-    start: NDArray[np.float64],
-    end: NDArray[np.float64],
-    margin: float,
-) -> bool:
-    dx, dy = end[0] - start[0], end[1] - start[1]
-    steps = max(1, math.ceil(math.hypot(dx, dy) / (0.5 * frame[2])))
-    for i in range(1, steps + 1):
-        if gap_at(gap, closed, frame, start[0] + dx * i / steps, start[1] + dy * i / steps) < margin:
-            return False
-    return True
-
-
-def in_sight(around: Surroundings, start: NDArray[np.float64], end: NDArray[np.float64], margin: float = 0.0) -> bool:
-    """Return whether the straight line between two points crosses no closed cell and keeps a clearance.
-
-    Args:
-        around: The surroundings.
-        start: (2,) or longer, x, y (m); not looked at itself.
-        end: (2,) or longer, x, y (m).
-        margin: Least clearance (m).
-    """
-    ends = np.asarray(start, np.float64)[:2], np.asarray(end, np.float64)[:2]
-    return bool(_in_sight(around.gap, around.closed, around.frame, *ends, margin))
 
 
 @njit(cache=True, nogil=True)
@@ -89,7 +60,7 @@ def carrot(
         travelled += math.hypot(path[i, 0] - path[i - 1, 0], path[i, 1] - path[i - 1, 1])
         if travelled > lookahead:
             break
-        if travelled <= _SHORTEST_CARROT or _in_sight(gap, closed, frame, position, path[i], margin):
+        if travelled <= _SHORTEST_CARROT or line_is_free(gap, closed, frame, position, path[i], margin):
             chosen = i
     return chosen
 

@@ -11,13 +11,13 @@ arc of 0.167 m, this is what forbids driving up to a wall: facing it at 0.28 m, 
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 
 import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.planning.heap import pop, push
+from lidarena.planning.surroundings import Surroundings, gap_at
 from lidarena.world.refusals import ConfigError
 
 _BIN = 0.07  # side of a position bin (m)
@@ -63,70 +63,6 @@ class Commands:
         moves = np.stack([drive * ahead, drive * aside, turn], axis=1)
         per_edge = np.maximum(np.abs(turn) / _TURN_EDGE, drive / _DRIVE_EDGE)
         return cls(rows, period, moves, np.maximum(1, np.round(1.0 / per_edge)).astype(np.int64))
-
-
-@dataclass(frozen=True)
-class Surroundings:
-    """What the robot knows of its surroundings, as arrays on one grid.
-
-    Attributes:
-        gap: (rows, cols) float32 clearance of each cell (m), see :func:`lidarena.planning.inflation.clearance`.
-        closed: (rows, cols) bool, cells where the robot's centre must not go whatever the clearance.
-        resolution: Side of a cell (m).
-        origin: World x, y of the lower-left corner of cell [0, 0].
-    """
-
-    gap: NDArray[np.float32]
-    closed: NDArray[np.bool_]
-    resolution: float
-    origin: tuple[float, float]
-
-    def cell(self, x: float, y: float) -> tuple[int, int]:
-        """Return the [row, column] of a point, moved into the grid if it lies outside."""
-        rows, cols = self.gap.shape
-        row = math.floor((y - self.origin[1]) / self.resolution)
-        col = math.floor((x - self.origin[0]) / self.resolution)
-        return min(max(row, 0), rows - 1), min(max(col, 0), cols - 1)
-
-    def points(self, cells: NDArray[np.int64]) -> NDArray[np.float64]:
-        """Return the centres (n, 2) x, y of cells (n, 2) [row, column]."""
-        centres: NDArray[np.float64] = np.asarray(cells, np.float64)[:, ::-1] + 0.5
-        points: NDArray[np.float64] = centres * self.resolution + np.asarray(self.origin)
-        return points
-
-    @cached_property
-    def frame(self) -> NDArray[np.float64]:
-        """The numbers that kernels need: x and y of the origin, side of a cell."""
-        return np.array([self.origin[0], self.origin[1], self.resolution])
-
-
-@njit(cache=True, nogil=True)
-def gap_at(
-    gap: NDArray[np.float32], closed: NDArray[np.bool_], frame: NDArray[np.float64], x: float, y: float
-) -> float:
-    """Return the clearance (m) at a point, bilinear between cell centres; -1 in a closed cell or off the grid.
-
-    Args:
-        gap: (rows, cols) clearance of the cells (m).
-        closed: (rows, cols) cells that are forbidden.
-        frame: (3,) x, y of the origin, side of a cell.
-        x: The point's x (m).
-        y: The point's y (m).
-    """
-    rows, cols = gap.shape
-    u = (x - frame[0]) / frame[2]
-    v = (y - frame[1]) / frame[2]
-    if u < 0.0 or v < 0.0 or u >= cols or v >= rows or closed[int(v), int(u)]:
-        return -1.0
-    u = min(max(u - 0.5, 0.0), cols - 1.0)
-    v = min(max(v - 0.5, 0.0), rows - 1.0)
-    c, r = int(u), int(v)
-    c1, r1 = min(c + 1, cols - 1), min(r + 1, rows - 1)
-    u -= c
-    v -= r
-    low = (1.0 - u) * gap[r, c] + u * gap[r, c1]
-    high = (1.0 - u) * gap[r1, c] + u * gap[r1, c1]
-    return float((1.0 - v) * low + v * high)
 
 
 @njit(cache=True, nogil=True)

@@ -2,18 +2,19 @@
 
 from typing import Any
 
-from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.world.kernels import inlined
 
-@njit(cache=True, nogil=True, forceinline=True)
+
+@inlined
 def copy_vector(target: NDArray[Any], source: NDArray[Any]) -> None:
     """``target[:] = source`` for vectors of one length."""
     for i in range(target.shape[0]):
         target[i] = source[i]
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def copy_matrix(target: NDArray[Any], source: NDArray[Any]) -> None:
     """``target[:] = source`` for matrices of one shape."""
     for i in range(target.shape[0]):

@@ -3,24 +3,26 @@
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.slam.copying import copy_matrix, copy_vector
 from lidarena.slam.likelihood_field import clear_fields, copy_field, register_points
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState
-from lidarena.slam.scan_matching import invert, match
+from lidarena.slam.scan_matching import invert, match, misfit
 from lidarena.slam.scan_points import extract_points
 from lidarena.slam.uncertainty import d_optimality, pose_moments, weight_entropy
-from lidarena.world.odometry import deviations, move
+from lidarena.world.kernels import kernel, leaf
+from lidarena.world.odometry import deviations, move, relative_motion
 from lidarena.world.random_streams import normal, uniform
 
+_SAMPLED_STARTS = 8
+"""Sampled motions that are tried before the first particle is matched."""
 _LEAST_VARIANCE = 1e-8
 """Added to the odometry's covariance (m², rad²), so that a robot at rest has an invertible prior."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def step_filters(
     first: int,
     last: int,
@@ -66,7 +68,7 @@ def step_filters(
         _summarise(w, state)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def predict(
     w: int,
     duration: float,
@@ -87,7 +89,7 @@ def predict(
     state.since[w, 2] += duration
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _compound_covariance(
     motion: NDArray[np.float64],
     covariance: NDArray[np.float64],
@@ -113,7 +115,7 @@ def _compound_covariance(
     covariance[2, 2] += vt
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def update(
     w: int,
     resolution: float,
@@ -137,14 +139,19 @@ def update(
         covariance[k, k] += _LEAST_VARIANCE
     invert(covariance, local)
     prior, information, posterior = np.empty(3), np.empty((3, 3)), np.empty((3, 3))
+    motion = np.empty(3)
+    _likeliest_motion(w, resolution, chosen, motion, state, maps)
     for i in range(parameters.particles):
         copy_vector(prior, state.anchors[w, i])
         _rotate(local, prior[2], information)
+        copy_vector(state.particles[w, i], prior)
+        move(state.particles[w, i], motion[0], motion[1], motion[2])
         move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
         likelihood = match(
             state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen, parameters.matcher,
             prior, information, state.particles[w, i], posterior,
         )  # fmt: skip
+        motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
         state.log_weights[w, i] += parameters.likelihood_gain * likelihood
         _draw(state.particles[w, i], posterior, stream)
         register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
@@ -156,7 +163,33 @@ def update(
     _forget_motion(w, state)
 
 
-@njit(cache=True, nogil=True)
+@kernel
+def _likeliest_motion(
+    w: int,
+    resolution: float,
+    points: NDArray[np.float64],
+    motion: NDArray[np.float64],
+    state: FilterState,
+    maps: OccupancyMaps,
+) -> None:
+    """Which of the first particles' sampled motions since the last scan fits the first particle's map best (3,).
+
+    What the odometry got wrong is the same for all particles: matching starts each of them where the one before it ended, and
+    the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were needed.
+    """
+    pose = np.empty(3)
+    least = math.inf
+    for i in range(min(_SAMPLED_STARTS, state.particles.shape[1])):
+        dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
+        copy_vector(pose, state.anchors[w, 0])
+        move(pose, dx, dy, dtheta)
+        missed = misfit(state.fields.tiles[w], state.fields.table[w, 0], maps.origin[w], resolution, points, pose)
+        if missed < least:
+            least = missed
+            motion[0], motion[1], motion[2] = dx, dy, dtheta
+
+
+@kernel
 def _choose(points: NDArray[np.float64], flat: NDArray[np.bool_], count: int, most: int) -> NDArray[np.float64]:
     """At most ``most`` points with a normal, evenly over the scan (n, 5)."""
     usable, total = np.empty(count, np.int64), 0
@@ -170,7 +203,7 @@ def _choose(points: NDArray[np.float64], flat: NDArray[np.bool_], count: int, mo
     return chosen
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _rotate(local: NDArray[np.float64], theta: float, out: NDArray[np.float64]) -> None:
     """Information (3, 3) of a motion in the frame of heading ``theta``, expressed in the world's frame."""
     cos, sin = math.cos(theta), math.sin(theta)
@@ -183,7 +216,7 @@ def _rotate(local: NDArray[np.float64], theta: float, out: NDArray[np.float64]) 
     out[2, 2] = local[2, 2]
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _draw(pose: NDArray[np.float64], information: NDArray[np.float64], stream: NDArray[np.uint64]) -> None:
     """Replace ``pose`` (3,) by a sample of the Gaussian around it, given its information matrix A = L Lᵀ: x + L⁻ᵀ z."""
     l00 = math.sqrt(information[0, 0])
@@ -199,7 +232,7 @@ def _draw(pose: NDArray[np.float64], information: NDArray[np.float64], stream: N
     pose[1] += z1
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _normalise(w: int, state: FilterState) -> None:
     """Normalise world w's weights and compute their entropy and N_eff."""
     n = state.log_weights.shape[1]
@@ -218,7 +251,7 @@ def _normalise(w: int, state: FilterState) -> None:
     state.criteria[w, 2] = 1.0 / squares
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _publish(
     w: int,
     resolution: float,
@@ -254,7 +287,7 @@ def _publish(
     state.updates[w] = now + 1
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _best_particle(w: int, slot: int, now: int, parameters: FilterParameters, state: FilterState) -> int:
     """The likeliest particle, or the likeliest descendant of the published one unless it is ``loyalty`` times less likely."""
     best = 0
@@ -273,7 +306,7 @@ def _best_particle(w: int, slot: int, now: int, parameters: FilterParameters, st
     return best
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
     """Systematic resampling; survivors stay where they are, their copies overwrite the dead."""
     n = state.weights.shape[1]
@@ -298,14 +331,14 @@ def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
     state.weights[w] = 1.0 / n
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _summarise(w: int, state: FilterState) -> None:
     """Mean pose, covariance and D-optimality of world w."""
     pose_moments(state.particles[w], state.weights[w], state.estimate[w], state.covariance[w])
     state.criteria[w, 0] = d_optimality(state.covariance[w])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _begin(
     w: int,
     resolution: float,
@@ -333,7 +366,7 @@ def _begin(
     _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _forget_motion(w: int, state: FilterState) -> None:
     """Begin to add up the odometry anew after a scan."""
     for k in range(3):

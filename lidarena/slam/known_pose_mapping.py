@@ -3,11 +3,11 @@
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters
+from lidarena.world.kernels import leaf
 
 
 class KnownPoseMapper:
@@ -69,7 +69,7 @@ class KnownPoseMapper:
         )  # fmt: skip
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _map_scans(
     first: int,
     last: int,

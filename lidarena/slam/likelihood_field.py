@@ -12,10 +12,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.slam.copying import copy_matrix
+from lidarena.world.kernels import inlined, leaf
 
 SIGMA = 0.08
 """Width of the field [m]: wide enough to pull in a pose that is 10 cm off, narrow enough for 5 cm cells."""
@@ -36,7 +36,8 @@ _SHIFTS = 8
 CELL = 0.05
 """Side of the cells that the fields are made of [m]; gmapping's δ."""
 _FRESH = 0.75
-"""A point is stamped where the field is lower: no wall is known within about 6 cm."""
+"""A point is stamped where the field is lower: no wall is known within about 6 cm of the middle of the
+point's cell."""
 
 
 def _bumps() -> NDArray[np.uint16]:
@@ -85,7 +86,7 @@ def empty_fields(worlds: int, particles: int, rows: int, columns: int) -> Fields
     return fields
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def clear_fields(fields: Fields, w: int) -> None:
     """Forget every wall of world w."""
     capacity = fields.free.shape[1]
@@ -96,7 +97,7 @@ def clear_fields(fields: Fields, w: int) -> None:
     fields.free_count[w] = capacity - 1
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def copy_field(fields: Fields, w: int, source: int, target: int) -> None:
     """Make particle ``target``'s field the same as ``source``'s by sharing its tiles."""
     for a in range(fields.table.shape[2]):
@@ -113,7 +114,7 @@ def copy_field(fields: Fields, w: int, source: int, target: int) -> None:
                 fields.table[w, target, a, b] = new
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> int:
     """Index of the tile at (a, b) after making sure that this particle alone uses it."""
     old = fields.table[w, particle, a, b]
@@ -129,43 +130,39 @@ def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> int:
     return np.int64(new)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def facing_mask(sector: int) -> int:
     """The sectors within about 100° of ``sector`` (any integer, taken modulo 16), as 16 bits."""
     shift = (sector + 12) & (SECTORS - 1)
     return ((0x1FF << shift) | (0x1FF >> (SECTORS - shift))) & 0xFFFF
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def facing(cell: int, allowed: int) -> float:
     """The cell's value if its wall faces one of the ``allowed`` sectors (bits), else 0; without a branch."""
     return np.float64((cell >> 4) & -((allowed >> (cell & 15)) & 1))
 
 
-@njit(cache=True, nogil=True, forceinline=True)
-def field_at(tiles: NDArray[np.uint16], table: NDArray[np.int32], u: float, v: float, sector: int) -> float:
-    """A field's value at column ``u``, row ``v`` (cell centres at integers) of walls that face ``sector``; bilinear.
+@inlined
+def field_at(cells: NDArray[np.uint16], table: NDArray[np.int32], column: int, row: int, sector: int) -> float:
+    """A field's value in a cell, of walls that face ``sector``; 0 outside the grid.
 
     Args:
-        tiles: (capacity, TILE + 2, TILE + 2) one world's tiles.
+        cells: One world's tiles in one row.
         table: (A, B) one particle's table.
-        u: Column.
-        v: Row.
+        column: Of the cell.
+        row: Of the cell.
         sector: Direction that the point's own wall faces.
     """
-    if not (u >= 0.0 and v >= 0.0 and u < table.shape[1] * TILE - 1.0 and v < table.shape[0] * TILE - 1.0):
+    if not (0 <= column < table.shape[1] * TILE and 0 <= row < table.shape[0] * TILE):
         return 0.0
-    column, row = np.int64(u), np.int64(v)
-    t = np.uint64(table[np.uint64(row >> TILE_BITS), np.uint64(column >> TILE_BITS)])
-    c, r, one = np.uint64((column & (TILE - 1)) + 1), np.uint64((row & (TILE - 1)) + 1), np.uint64(1)
-    a, b, allowed = u - column, v - row, facing_mask(sector)
-    f00, f01 = facing(np.int64(tiles[t, r, c]), allowed), facing(np.int64(tiles[t, r, c + one]), allowed)
-    f10, f11 = facing(np.int64(tiles[t, r + one, c]), allowed), facing(np.int64(tiles[t, r + one, c + one]), allowed)
-    low, high = f00 + a * (f01 - f00), f10 + a * (f11 - f10)
-    return (low + b * (high - low)) / FULL
+    tile = np.int64(table[np.uint64(row >> TILE_BITS), np.uint64(column >> TILE_BITS)])
+    side = TILE + 2
+    k = np.uint64((tile * side + (row & (TILE - 1)) + 1) * side + (column & (TILE - 1)) + 1)
+    return facing(np.int64(cells[k]), facing_mask(sector)) / FULL
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def register_points(
     fields: Fields,
     w: int,
@@ -188,18 +185,18 @@ def register_points(
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
-    tiles, table = fields.tiles[w], fields.table[w, particle]
-    cells = tiles.reshape(-1)
+    cells, table = fields.tiles[w].reshape(-1), fields.table[w, particle]
     for i in range(points.shape[0]):
         x = pose[0] + cos * points[i, 0] - sin * points[i, 1]
         y = pose[1] + sin * points[i, 0] + cos * points[i, 1]
         u, v = (x - origin[0]) / resolution - 0.5, (y - origin[1]) / resolution - 0.5
+        column, row = int(math.floor(u + 0.5)), int(math.floor(v + 0.5))
         sector = np.int64(turn + points[i, 4])
-        if field_at(tiles, table, u, v, sector) < _FRESH:
+        if field_at(cells, table, column, row, sector) < _FRESH:
             _stamp(fields, cells, w, particle, u, v, sector & (SECTORS - 1))
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _stamp(
     fields: Fields,
     cells: NDArray[np.uint16],

@@ -8,8 +8,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lidarena.world.kernels import inlined, leaf
 
 OCCUPIED_SHARE = 0.25
 """A cell is occupied where more than this share of the beams that reached it ended there (gmapping's threshold)."""
@@ -59,7 +60,7 @@ def clear_map(maps: OccupancyMaps, world: int, plan: int, origin: NDArray[np.flo
     maps.origin[world] = origin
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def trace_scan(
     maps: OccupancyMaps,
     world: int,
@@ -107,7 +108,7 @@ def trace_scan(
     maps.covered[world] += change
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def _pass_cells(
     counts: NDArray[np.int64],
     occupancy: NDArray[np.int8],
@@ -138,7 +139,7 @@ def _pass_cells(
     return change
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _pass_clipped(
     counts: NDArray[np.int64],
     occupancy: NDArray[np.int8],
@@ -160,10 +161,8 @@ def _pass_clipped(
     return change
 
 
-@njit(cache=True, nogil=True)
-def _reassess(
-    counts: NDArray[np.int64], occupancy: NDArray[np.int8], wanted: NDArray[np.uint8], r: int, c: int
-) -> int:
+@leaf
+def _reassess(counts: NDArray[np.int64], occupancy: NDArray[np.int8], wanted: NDArray[np.uint8], r: int, c: int) -> int:
     """Set a cell's occupancy from its counts and return the change in covered cells."""
     hits, visits = counts[r, c] >> 32, counts[r, c] & (_HIT - 1)
     was_known = occupancy[r, c] >= 0

@@ -9,11 +9,10 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing, facing_mask
-
+from lidarena.world.kernels import fast_leaf, inlined, kernel, leaf
 
 _OVER_RELAXATION = 1.4
 """A wall that was stamped from several poses has a flattened crest: plain steps fall short, by half in the mean."""
@@ -35,7 +34,7 @@ class MatcherParameters(NamedTuple):
     deviation: float = 0.02
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def match(
     tiles: NDArray[np.uint16],
     table: NDArray[np.int32],
@@ -79,7 +78,20 @@ def match(
     return fit - 0.5 * quadratic + 0.5 * math.log(determinant(information) / determinant(posterior))
 
 
-@njit(cache=True, nogil=True, fastmath={"reassoc", "contract", "nsz", "arcp"})
+@kernel
+def misfit(
+    tiles: NDArray[np.uint16],
+    table: NDArray[np.int32],
+    origin: NDArray[np.float64],
+    resolution: float,
+    points: NDArray[np.float64],
+    pose: NDArray[np.float64],
+) -> float:
+    """Σ (1 − f) of ``points`` (n, 5) seen from ``pose`` (3,): how many of them are not on a known wall; see ``match``."""
+    return _linearise(tiles, table, origin[0], origin[1], resolution, points, pose, np.empty((3, 3)), np.empty(3))
+
+
+@fast_leaf
 def _linearise(
     tiles: NDArray[np.uint16],
     table: NDArray[np.int32],
@@ -138,7 +150,7 @@ def _linearise(
     return missed
 
 
-@njit(cache=True, nogil=True, forceinline=True, fastmath={"reassoc", "contract", "nsz", "arcp"})
+@inlined
 def _spline(cells: NDArray[np.uint16], first: int, a: float, allowed: int) -> tuple[float, float]:
     """Quadratic B-spline through three cells from ``first`` on, at ``a`` ∈ ±½ from the middle one, and its slope per cell."""
     k, one, two = np.uint64(first), np.uint64(1), np.uint64(2)
@@ -149,7 +161,7 @@ def _spline(cells: NDArray[np.uint16], first: int, a: float, allowed: int) -> tu
     return value, (a - 0.5) * f0 - 2.0 * a * f1 + (a + 0.5) * f2
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _add_prior(
     deviation: float,
     prior: NDArray[np.float64],
@@ -172,14 +184,14 @@ def _add_prior(
     return quadratic
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def determinant(m: NDArray[np.float64]) -> float:
     """Determinant of a symmetric 3×3 matrix, at least 1e-300."""
     a, b, c, d, e, f = m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2]
     return max(a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d), 1e-300)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def invert(m: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     """Inverse of a symmetric positive definite 3×3 matrix."""
     a, b, c, d, e, f = m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2]
@@ -190,7 +202,7 @@ def invert(m: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     out[1, 2] = out[2, 1] = (b * c - a * e) * over
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def solve(m: NDArray[np.float64], right: NDArray[np.float64], out: NDArray[np.float64]) -> None:
     """Solve m · out = right for a symmetric positive definite 3×3 matrix."""
     inverse = np.empty((3, 3))

@@ -3,10 +3,10 @@
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import SECTORS
+from lidarena.world.kernels import kernel, leaf
 
 SPACING = 0.05
 """Beams are averaged over this length of wall [m]; a cell's side, more points would say nothing new."""
@@ -18,7 +18,7 @@ FLATNESS = 0.08
 """Largest ratio of the fitted points' variances across and along the wall; corners exceed it and get no normal."""
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def extract_points(
     scan: NDArray[np.float32],
     directions: NDArray[np.float64],
@@ -44,7 +44,7 @@ def extract_points(
     return count
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _average_hits(
     scan: NDArray[np.float32],
     directions: NDArray[np.float64],
@@ -79,7 +79,7 @@ def _average_hits(
     return count
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _fit_normal(i: int, count: int, points: NDArray[np.float64], surface: NDArray[np.int64]) -> bool:
     """Fit a line to the neighbours of point ``i`` on its surface; returns False where they are too few or bent."""
     px, py = points[i, 0], points[i, 1]

@@ -3,15 +3,16 @@
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lidarena.world.kernels import leaf
 
 COVARIANCE_FLOOR = (4e-6, 4e-6, 1e-6)
 """Added to the diagonal of a pose's covariance (m², m², rad²): what the scan matcher itself leaves open, 2 mm and 1 mrad,
 so that a filter whose particles coincide is certain but never singular."""
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def d_optimality(covariance: NDArray[np.float64]) -> float:
     """D-optimality det(Σ)^(1/l) = exp(mean ln λ_k) of a 3×3 pose covariance; geometric mean of its eigenvalues."""
     a, b, c = covariance[0, 0], covariance[0, 1], covariance[0, 2]
@@ -30,7 +31,7 @@ def e_optimality(covariance: NDArray[np.float64]) -> float:
     return float(np.linalg.eigvalsh(covariance)[-1])
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def weight_entropy(weights: NDArray[np.float64]) -> float:
     """Entropy −Σ w ln w of normalised weights (N,) [nat]; at most ln N."""
     total = 0.0
@@ -40,7 +41,7 @@ def weight_entropy(weights: NDArray[np.float64]) -> float:
     return total
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def pose_moments(
     particles: NDArray[np.float64],
     weights: NDArray[np.float64],

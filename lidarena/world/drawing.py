@@ -98,7 +98,9 @@ def draw_floorplan(canvas: Canvas, plan: Floorplan) -> None:
         canvas.line(np.array([x, y]) + radius * np.stack([np.cos(turn), np.sin(turn)], axis=1), INK, 1)
 
 
-def write(image: NDArray[np.uint8], text: str, left: int, baseline: int, colour: Colour = INK, size: float = 0.42) -> int:
+def write(
+    image: NDArray[np.uint8], text: str, left: int, baseline: int, colour: Colour = INK, size: float = 0.42
+) -> int:
     """Write into a picture (height, width, 3) and return the column where the text ends."""
     cv2.putText(image, text, (left, baseline), cv2.FONT_HERSHEY_SIMPLEX, size, colour, 1, cv2.LINE_AA)
     (width, _), _ = cv2.getTextSize(text, cv2.FONT_HERSHEY_SIMPLEX, size, 1)

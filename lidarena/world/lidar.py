@@ -11,10 +11,10 @@ from collections.abc import Sequence
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.kernels import fast_leaf, kernel, leaf
 from lidarena.world.random_streams import normal
 
 TILE = 1.0
@@ -87,7 +87,7 @@ class Lidar:
         return ranges
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def cast_beams(
     first: int,
     last: int,
@@ -115,7 +115,7 @@ def cast_beams(
                 ranges[w, r, k] = min(1.0 / inverse[k], max_range)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _see_plan(
     x: float,
     y: float,
@@ -147,7 +147,7 @@ def _see_plan(
             _see_circle(cx - x, cy - y, radius, theta, directions, inverse)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _see_edge(
     ax: float,
     ay: float,
@@ -180,7 +180,7 @@ def _see_edge(
         _raise_run(0, end - beams, a, b, directions, inverse)
 
 
-@njit(cache=True, nogil=True, fastmath={"nnan", "nsz"})
+@fast_leaf
 def _raise_run(
     begin: int, end: int, a: float, b: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
 ) -> None:
@@ -191,7 +191,7 @@ def _raise_run(
         inverse[k] = value if value > inverse[k] else inverse[k]
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _see_circle(
     dx: float, dy: float, radius: float, theta: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
 ) -> None:
@@ -213,7 +213,7 @@ def _see_circle(
             inverse[k] = max(inverse[k], 1.0 / (along - math.sqrt(root)))
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def add_range_noise(
     first: int,
     last: int,
@@ -275,7 +275,7 @@ def _lay_out(plans: Sequence[Floorplan], max_range: float) -> Scenery:
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _tile_edges(
     edges: NDArray[np.float64], x0: float, y0: float, rows: int, columns: int, max_range: float
 ) -> NDArray[np.int64]:

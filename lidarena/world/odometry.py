@@ -4,9 +4,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.world.kernels import leaf
 from lidarena.world.random_streams import normal
 
 
@@ -33,14 +33,14 @@ class OdometryNoise(NamedTuple):
         return OdometryNoise(*(factor * value for value in self))
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def wrap(angle: float) -> float:
     """The same angle in (-π, π] [rad]."""
     turned = angle - 2.0 * math.pi * math.floor((angle + math.pi) / (2.0 * math.pi))
     return math.pi if turned <= -math.pi else turned
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def deviations(noise: OdometryNoise, dx: float, dy: float, dtheta: float) -> tuple[float, float, float]:
     """Standard deviations (σ_x, σ_y, σ_θ) [m, m, rad] of one reading."""
     sx = noise.srr * abs(dx) + noise.str_ * abs(dtheta) + 0.3 * noise.srr * abs(dy)
@@ -48,7 +48,7 @@ def deviations(noise: OdometryNoise, dx: float, dy: float, dtheta: float) -> tup
     return sx, sy, noise.stt * abs(dtheta) + noise.srt * math.hypot(dx, dy)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def relative_motion(before: NDArray[np.float64], after: NDArray[np.float64]) -> tuple[float, float, float]:
     """Motion (dx, dy, dθ) between two poses (3,), in the frame of the first."""
     cos, sin = math.cos(before[2]), math.sin(before[2])
@@ -56,7 +56,7 @@ def relative_motion(before: NDArray[np.float64], after: NDArray[np.float64]) -> 
     return dx * cos + dy * sin, dy * cos - dx * sin, wrap(after[2] - before[2])
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def move(pose: NDArray[np.float64], dx: float, dy: float, dtheta: float) -> None:
     """Compose ``pose`` (3,) in place with a motion given in its own frame."""
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
@@ -65,7 +65,7 @@ def move(pose: NDArray[np.float64], dx: float, dy: float, dtheta: float) -> None
     pose[2] = wrap(pose[2] + dtheta)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def read_odometry(
     first: int,
     last: int,
@@ -95,7 +95,7 @@ def read_odometry(
             readings[w, r, 2] = dtheta + st * normal(streams[w])
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def move_poses(first: int, last: int, poses: NDArray[np.float64], readings: NDArray[np.float64]) -> None:
     """Compose ``poses`` (worlds, robots, 3) of worlds first … last - 1 in place with ``readings`` of the same shape."""
     for w in range(first, last):

@@ -11,7 +11,6 @@ from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan, Pose
 
-
 _SLOP = 1e-3
 """Overlap that contacts tolerate [m]; pymunk's default of 0.1 is meant for pixels."""
 _MARGIN = 0.02

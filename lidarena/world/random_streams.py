@@ -7,8 +7,10 @@ state, drawn from its generator at reset. What a world draws depends on nothing 
 import math
 
 import numpy as np
-from numba import njit, uint64
+from numba import uint64
 from numpy.typing import NDArray
+
+from lidarena.world.kernels import inlined, leaf
 
 _LAYERS = 256
 _TAIL = 3.6541528853610088
@@ -34,7 +36,7 @@ def _ziggurat_layers() -> tuple[NDArray[np.float64], NDArray[np.float64]]:
 _EDGE, _DENSITY = _ziggurat_layers()
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def next_word(state: NDArray[np.uint64]) -> np.uint64:
     """Next 64 random bits of xoshiro256++ (Blackman & Vigna); ``state`` (4,) moves on."""
     total = uint64(state[0] + state[3])
@@ -49,13 +51,13 @@ def next_word(state: NDArray[np.uint64]) -> np.uint64:
     return word
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def uniform(state: NDArray[np.uint64]) -> float:
     """Uniform in [0, 1) with 53 random bits."""
     return np.int64(next_word(state) >> uint64(11)) * (1.0 / 9007199254740992.0)
 
 
-@njit(cache=True, nogil=True, forceinline=True)
+@inlined
 def normal(state: NDArray[np.uint64]) -> float:
     """Standard normal by the ziggurat method (Marsaglia & Tsang 2000)."""
     word = next_word(state)
@@ -66,7 +68,7 @@ def normal(state: NDArray[np.uint64]) -> float:
     return _rim(state, x, layer)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _rim(state: NDArray[np.uint64], x: float, layer: int) -> float:
     """A normal whose first draw ``x`` fell into the rim of its layer."""
     while True:
@@ -81,7 +83,7 @@ def _rim(state: NDArray[np.uint64], x: float, layer: int) -> float:
             return x
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _tail(state: NDArray[np.uint64], negative: bool) -> float:
     """A normal beyond the base strip (Marsaglia 1964)."""
     while True:

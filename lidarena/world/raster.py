@@ -4,8 +4,9 @@ import math
 from typing import NamedTuple
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lidarena.world.kernels import leaf
 
 CLEARANCE_CAP = 1.0
 """Clearances are exact up to here [m]; larger ones are reported as this."""
@@ -59,7 +60,7 @@ def rasterize(
     return Raster(solid, clearance, origin, resolution)
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _count_crossings(
     edges: NDArray[np.float64], x0: float, y0: float, resolution: float, winding: NDArray[np.int32]
 ) -> None:
@@ -80,7 +81,7 @@ def _count_crossings(
             winding[row, min(max(column, 0), columns)] += sign
 
 
-@njit(cache=True, nogil=True)
+@leaf
 def _edge_clearance(
     edges: NDArray[np.float64], x0: float, y0: float, resolution: float, clearance: NDArray[np.float32]
 ) -> None:

@@ -22,9 +22,9 @@ def fake(**options):
 
 
 def test_names_are_known_and_every_one_can_be_made():
-    assert {"frontier", "random"} <= set(names())
+    assert {"ealc", "frontier", "random"} <= set(names())
     assert names() == sorted(names())
-    for name in ("frontier", "random"):
+    for name in ("ealc", "frontier", "random"):
         assert isinstance(make(name, fake()), Policy)
 
 

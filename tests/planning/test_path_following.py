@@ -7,7 +7,8 @@ import pytest
 from lidarena.planning.grid_search import find_path
 from lidarena.planning.inflation import Inflation, clearance, inflate
 from lidarena.planning.path_following import PathFollower, blocked_ahead, carrot, predict
-from lidarena.planning.steering import Commands, Surroundings, gap_at
+from lidarena.planning.steering import Commands
+from lidarena.planning.surroundings import Surroundings, gap_at
 
 RES = 0.05
 DISCRETE = Commands.of([(0.5, 0.0), (0.05, 0.3), (0.05, -0.3)], 0.2)

@@ -5,25 +5,14 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.planning.inflation import clearance
 from lidarena.planning.path_following import predict
-from lidarena.planning.steering import Commands, Surroundings, gap_at, loiter_gap, steer, tightest
+from lidarena.planning.steering import Commands, loiter_gap, steer, tightest
 from lidarena.world.refusals import ConfigError
+from tests.planning.test_surroundings import room
 
 RES = 0.05
 DISCRETE = Commands.of([(0.5, 0.0), (0.05, 0.3), (0.05, -0.3)], 0.2)
 ON_THE_SPOT = Commands.of([(0.5, 0.0), (0.0, 1.0), (0.0, -1.0)], 0.2)
-
-
-def room(width, height, solid=()):
-    """A walled room (m), with solid rectangles x0, y0, x1, y1 (m)."""
-    rows, cols = round(height / RES), round(width / RES)
-    occupancy = np.zeros((rows + 2, cols + 2), np.int8)
-    occupancy[[0, -1]] = 100
-    occupancy[:, [0, -1]] = 100
-    for x0, y0, x1, y1 in solid:
-        occupancy[1 + round(y0 / RES) : 1 + round(y1 / RES), 1 + round(x0 / RES) : 1 + round(x1 / RES)] = 100
-    return Surroundings(clearance(occupancy, RES), occupancy != 0, RES, (-RES, -RES))
 
 
 def least(around, pose, commands, sequence):
@@ -54,28 +43,6 @@ def test_commands_are_exact_arcs():
 def test_useless_commands_are_refused(velocities, period):
     with pytest.raises(ConfigError, match=r"allowed|at least one"):
         Commands.of(velocities, period)
-
-
-def test_points_and_cells_are_inverse():
-    around = room(2.0, 1.0)
-    cells = np.argwhere(~around.closed)
-    points = around.points(cells)
-    assert [around.cell(x, y) for x, y in points] == [tuple(cell) for cell in cells.tolist()]
-    assert around.cell(-50.0, 50.0) == (around.gap.shape[0] - 1, 0)
-
-
-@settings(max_examples=100, deadline=None)
-@given(st.floats(0.2, 1.8), st.floats(0.2, 0.8))
-def test_gap_is_the_distance_to_the_walls(x, y):
-    around = room(2.0, 1.0)
-    expected = min(x, 2.0 - x, y, 1.0 - y)
-    assert gap_at(around.gap, around.closed, around.frame, x, y) == pytest.approx(expected, abs=0.6 * RES)
-
-
-def test_gap_is_negative_where_the_robot_must_not_go():
-    around = room(2.0, 1.0)
-    for x, y in ((-0.02, 0.5), (5.0, 0.5), (1.0, -3.0)):
-        assert gap_at(around.gap, around.closed, around.frame, x, y) == -1.0
 
 
 def test_loitering_room_is_that_of_the_circle():
