@@ -15,14 +15,15 @@ from lidarena.world.kernels import inlined, leaf
 OCCUPIED_SHARE = 0.25
 """A cell is occupied where more than this share of the beams that reached it ended there (gmapping's threshold)."""
 _ONE = 1 << 16  # fixed-point unit of the ray's steps
-_HIT = 1 << 32  # one beam that ended in a cell
 
 
 class OccupancyMaps(NamedTuple):
     """Occupancy grids of a batch, ``(worlds, rows, columns)``, row 0 at the smallest y.
 
     Attributes:
-        counts: (worlds, rows, columns) int64: beams that ended in a cell × 2³² + beams that reached it.
+        visits: (worlds, rows, columns) int32: beams that reached a cell, times two, plus one where the cell is occupied. (With that
+            bit the innermost loop knows from a single number that a cell stays what it is: known and free.)
+        hits: (worlds, rows, columns) int32: beams that ended in a cell.
         occupancy: int8: -1 unknown, 0 free, 100 occupied.
         wanted: (plans, rows, columns) uint8: 1 where a known cell counts as covered, else 0.
         plan: (worlds,) which of ``wanted`` a world uses.
@@ -30,7 +31,8 @@ class OccupancyMaps(NamedTuple):
         origin: (worlds, 2) lower-left corner of each grid [m].
     """
 
-    counts: NDArray[np.int64]
+    visits: NDArray[np.int32]
+    hits: NDArray[np.int32]
     occupancy: NDArray[np.int8]
     wanted: NDArray[np.uint8]
     plan: NDArray[np.int64]
@@ -42,7 +44,8 @@ def empty_maps(worlds: int, wanted: NDArray[np.uint8]) -> OccupancyMaps:
     """Unknown maps for ``worlds`` worlds, as large as ``wanted`` (plans, rows, columns)."""
     rows, columns = wanted.shape[1:]
     return OccupancyMaps(
-        np.zeros((worlds, rows, columns), np.int64),
+        np.zeros((worlds, rows, columns), np.int32),
+        np.zeros((worlds, rows, columns), np.int32),
         np.full((worlds, rows, columns), -1, np.int8),
         wanted,
         np.zeros(worlds, np.int64),
@@ -53,7 +56,8 @@ def empty_maps(worlds: int, wanted: NDArray[np.uint8]) -> OccupancyMaps:
 
 def clear_map(maps: OccupancyMaps, world: int, plan: int, origin: NDArray[np.float64]) -> None:
     """Forget everything that one world's map knows."""
-    maps.counts[world] = 0
+    maps.visits[world] = 0
+    maps.hits[world] = 0
     maps.occupancy[world] = -1
     maps.plan[world] = plan
     maps.covered[world] = 0
@@ -88,7 +92,7 @@ def trace_scan(
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     start_u = (pose[0] - maps.origin[world, 0]) / resolution
     start_v = (pose[1] - maps.origin[world, 1]) / resolution
-    counts, occupancy = maps.counts[world], maps.occupancy[world]
+    visits, hits, occupancy = maps.visits[world], maps.hits[world], maps.occupancy[world]
     wanted = maps.wanted[maps.plan[world]]
     rows, columns = occupancy.shape
     c0, r0 = int(math.floor(start_u)), int(math.floor(start_v))
@@ -98,19 +102,20 @@ def trace_scan(
         reach = min(scan[k], max_range) / resolution
         c1 = int(math.floor(start_u + reach * (directions[0, k] * cos - directions[1, k] * sin)))
         r1 = int(math.floor(start_v + reach * (directions[0, k] * sin + directions[1, k] * cos)))
-        hit = scan[k] < max_range
         if inside and 0 <= c1 < columns and 0 <= r1 < rows:
-            change += _pass_cells(counts, occupancy, wanted, c0, r0, c1, r1, sign)
-            counts[r1, c1] += sign * (1 + _HIT) if hit else sign
-            change += _reassess(counts, occupancy, wanted, r1, c1)
+            change += _pass_cells(visits, hits, occupancy, wanted, c0, r0, c1, r1, sign)
+            visits[r1, c1] += 2 * sign
+            hits[r1, c1] += sign if scan[k] < max_range else 0
+            change += _reassess(visits, hits, occupancy, wanted, r1, c1)
         else:
-            change += _pass_clipped(counts, occupancy, wanted, c0, r0, c1, r1, sign)
+            change += _pass_clipped(visits, hits, occupancy, wanted, c0, r0, c1, r1, sign)
     maps.covered[world] += change
 
 
 @inlined
 def _pass_cells(
-    counts: NDArray[np.int64],
+    visits: NDArray[np.int32],
+    hits: NDArray[np.int32],
     occupancy: NDArray[np.int8],
     wanted: NDArray[np.uint8],
     c0: int,
@@ -128,20 +133,23 @@ def _pass_cells(
     if steps == 0:
         return 0
     u, v = c0 * _ONE + _ONE // 2, r0 * _ONE + _ONE // 2
-    step_u, step_v = dc * _ONE // steps, dr * _ONE // steps
+    scale = _ONE / steps
+    step_u, step_v = int(dc * scale), int(dr * scale)
     change = 0
     for _ in range(steps):
         c, r = np.uint64(u >> 16), np.uint64(v >> 16)
         u, v = u + step_u, v + step_v
-        counts[r, c] += sign
-        if sign < 0 or occupancy[r, c] != 0:  # one more passing beam leaves a free cell free
-            change += _reassess(counts, occupancy, wanted, np.int64(r), np.int64(c))
+        before = visits[r, c]
+        visits[r, c] = before + 2 * sign
+        if sign < 0 or before < 2 or before & 1:  # one more passing beam leaves a free cell free
+            change += _reassess(visits, hits, occupancy, wanted, np.int64(r), np.int64(c))
     return change
 
 
 @leaf
 def _pass_clipped(
-    counts: NDArray[np.int64],
+    visits: NDArray[np.int32],
+    hits: NDArray[np.int32],
     occupancy: NDArray[np.int8],
     wanted: NDArray[np.uint8],
     c0: int,
@@ -156,18 +164,25 @@ def _pass_clipped(
     for k in range(steps):
         c, r = c0 + (c1 - c0) * k // steps, r0 + (r1 - r0) * k // steps
         if 0 <= c < occupancy.shape[1] and 0 <= r < occupancy.shape[0]:
-            counts[r, c] += sign
-            change += _reassess(counts, occupancy, wanted, r, c)
+            visits[r, c] += 2 * sign
+            change += _reassess(visits, hits, occupancy, wanted, r, c)
     return change
 
 
 @leaf
-def _reassess(counts: NDArray[np.int64], occupancy: NDArray[np.int8], wanted: NDArray[np.uint8], r: int, c: int) -> int:
+def _reassess(
+    visits: NDArray[np.int32],
+    hits: NDArray[np.int32],
+    occupancy: NDArray[np.int8],
+    wanted: NDArray[np.uint8],
+    r: int,
+    c: int,
+) -> int:
     """Set a cell's occupancy from its counts and return the change in covered cells."""
-    hits, visits = counts[r, c] >> 32, counts[r, c] & (_HIT - 1)
-    was_known = occupancy[r, c] >= 0
-    if visits == 0:
-        occupancy[r, c] = -1
-        return -np.int64(wanted[r, c]) if was_known else 0
-    occupancy[r, c] = 100 if hits > OCCUPIED_SHARE * visits else 0
-    return 0 if was_known else np.int64(wanted[r, c])
+    reached, was_known = visits[r, c] >> 1, occupancy[r, c] >= 0
+    occupied = hits[r, c] > OCCUPIED_SHARE * reached
+    visits[r, c] = 2 * reached + (1 if occupied else 0)
+    occupancy[r, c] = -1 if reached == 0 else 100 if occupied else 0
+    if was_known == (reached > 0):
+        return 0
+    return -np.int64(wanted[r, c]) if was_known else np.int64(wanted[r, c])

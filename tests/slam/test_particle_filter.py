@@ -71,7 +71,8 @@ def test_the_published_map_is_what_tracing_the_best_past_alone_gives() -> None:
     for node in range(int(state.updates[0])):
         pose = state.node_poses[0, node, state.published[0, node]]
         trace_scan(again, 0, 0.05, pose, state.node_scans[0, node], drive.lidar.directions, 3.5, 1)
-    assert np.array_equal(again.counts, maps.counts)
+    assert np.array_equal(again.visits, maps.visits)
+    assert np.array_equal(again.hits, maps.hits)
     assert np.array_equal(again.occupancy, maps.occupancy)
     assert again.covered[0] == maps.covered[0] == ((maps.occupancy[0] >= 0) & (maps.wanted[0] > 0)).sum()
 
@@ -95,11 +96,11 @@ def test_weights_are_normalised_and_n_eff_lies_between_one_and_n() -> None:
 
 def test_starting_again_forgets_everything() -> None:
     drive = Drive(ring(), seed=3)
-    first = drive.filters.maps.counts.copy()
+    first = drive.filters.maps.visits.copy()
     scans, pose = drive.scans.copy(), drive.physics.poses[0, 0].copy()
     drive.run([FORWARD] * 40)
     drive.filters.start(0, 0, drive.raster.origin, pose, scans[:, 0])
-    assert np.array_equal(drive.filters.maps.counts, first)
+    assert np.array_equal(drive.filters.maps.visits, first)
     fields = drive.filters.state.fields
     used = set(np.unique(fields.table[0])) - {0}
     assert fields.free_count[0] + len(used) == fields.free.shape[1] - 1
