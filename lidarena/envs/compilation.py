@@ -1,4 +1,4 @@
-"""Telling the user why the very first step takes its time: the kernels are compiled once after installation, then cached."""
+"""Telling the user why the very first step takes its time: the kernels are compiled once, then cached."""
 
 import sys
 import threading

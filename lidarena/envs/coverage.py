@@ -30,9 +30,9 @@ class Coverage(NamedTuple):
 def measure_coverage(plan: Floorplan, resolution: float, radius: float) -> Coverage:
     """Find K, against whose size completeness is measured: |known ∩ K| / |K|.
 
-    A cell is wanted if the robot's disc, moving from the plan's start with its centre at least ``START_CLEARANCE`` from every
-    wall, can cover it, or if it is a wall cell whose surface borders such cells: 100% is attainable in every world. (Counting
-    the whole grid, as the paper's code does, would end at a share that depends on the drawing.)
+    A cell is wanted if the robot's disc, moving from the plan's start with its centre at least ``START_CLEARANCE`` from
+    every wall, can cover it, or if it is a wall cell whose surface borders such cells: 100% is attainable in every
+    world. (Counting the whole grid, as the paper's code does, would end at a share that depends on the drawing.)
 
     Args:
         plan: The floor plan, with its start.

@@ -23,10 +23,11 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     ## Description
 
-    A TurtleBot3 Burger (a disc of 0.105 m radius with a differential drive) starts at a known pose in an unknown floor plan.
-    Its odometry drifts (gmapping's noise model); a 360-beam lidar of 3.5 m range and 1 cm noise feeds a Rao-Blackwellised
-    particle filter, which estimates pose and map. Reward and observation are those of DA-SLAM (Alcalde et al. 2022), whose worlds
-    are ``lidarena/Env1-v0`` … ``lidarena/Env4-v0``; ``lidarena/Exploration-v0`` takes any floor plan.
+    A TurtleBot3 Burger (a disc of 0.105 m radius with a differential drive) starts at a known pose in an unknown floor
+    plan. Its odometry drifts (gmapping's noise model); a 360-beam lidar of 3.5 m range and 1 cm noise feeds a
+    Rao-Blackwellised particle filter, which estimates pose and map. Reward and observation are those of DA-SLAM
+    (Alcalde et al. 2022), whose worlds are ``lidarena/Env1-v0`` … ``lidarena/Env4-v0``; ``lidarena/Exploration-v0``
+    takes any floor plan.
 
     ## Action space
 
@@ -56,14 +57,15 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     - ``reward="completeness"`` (eq. 2): -100 on a collision, else the gain in map completeness in percentage points.
       Completeness is the known share of K, the cells that the robot can come to know (``measure_coverage``).
-    - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's covariance.
+    - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's
+      covariance.
 
     ``info["reward_terms"]`` holds the terms by name.
 
     ## Starting state
 
-    The map's own start, ``start=(x, y, theta)``, or ``start="random"``: any reachable place 0.25 m from the walls, any heading.
-    The filter knows the start: its frame is the floor plan's.
+    The map's own start, ``start=(x, y, theta)``, or ``start="random"``: any reachable place 0.25 m from the walls, any
+    heading. The filter knows the start: its frame is the floor plan's.
 
     ## Episode end
 
@@ -72,10 +74,10 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     ## Info
 
-    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat], ``n_eff``,
-    ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``odometry_pose`` (3,), ``reward_terms``; ``map``
-    (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change), ``resolution`` [m],
-    ``origin`` (2,).
+    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat],
+    ``n_eff``, ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``odometry_pose`` (3,),
+    ``reward_terms``; ``map`` (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later
+    steps change), ``resolution`` [m], ``origin`` (2,).
     What depends on the truth is ``completeness`` (and with it the reward), ``collision`` (a bumper) and, only with
     ``expose_truth=True``, ``truth``: ``pose`` and ``path_length``.
 
@@ -85,11 +87,11 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     ## References
 
-    Alcalde et al., DA-SLAM: Deep Active SLAM based on Deep Reinforcement Learning, LARS 2022. Grisetti, Stachniss, Burgard,
-    Improved techniques for grid mapping with Rao-Blackwellized particle filters, T-RO 2007.
+    Alcalde et al., DA-SLAM: Deep Active SLAM based on Deep Reinforcement Learning, LARS 2022. Grisetti, Stachniss,
+    Burgard, Improved techniques for grid mapping with Rao-Blackwellized particle filters, T-RO 2007.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": ["rgb_array"], "render_fps": 5}
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012 - as gym.Env declares it
 
     def __init__(self, **keywords: Any) -> None:
         """Make one world; the keywords are those of ``ExplorationOptions``.
@@ -141,7 +143,7 @@ class ExplorationEnv(gym.Env[Any, Any]):
         core = self._episodes.core
         return core.plans[int(core.plan[0])]
 
-    def render(self) -> NDArray[np.uint8] | None:  # type: ignore[override]
+    def render(self) -> NDArray[np.uint8] | None:
         """Picture (height, width, 3) of the truth and of what the filter believes; None without ``render_mode``.
 
         Raises:
@@ -156,10 +158,11 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
 
 class BatchedExploration(VectorEnv[Any, Any, Any]):
-    """``num_envs`` exploration worlds in one step; world ``i`` equals ``ExplorationEnv`` with seed ``seed + i`` to the bit.
+    """``num_envs`` exploration worlds in one step; world ``i`` is ``ExplorationEnv`` with seed ``seed + i`` to the bit.
 
     A world that ends begins its next episode in the same step (``AutoresetMode.SAME_STEP``): ``infos["final_obs"]`` and
-    ``infos["final_info"]`` hold the last observation and info of the old one. Spaces, rewards and keywords: ``ExplorationEnv``.
+    ``infos["final_info"]`` hold the last observation and info of the old one. Spaces, rewards and keywords:
+    ``ExplorationEnv``.
 
     Args:
         num_envs: Number of worlds.

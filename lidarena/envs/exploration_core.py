@@ -1,4 +1,4 @@
-"""The exploration worlds themselves, batched: physics, sensors, SLAM and bookkeeping, without spaces, rewards or episodes."""
+"""The exploration worlds themselves, batched: physics, sensors, SLAM, bookkeeping; no spaces, rewards or episodes."""
 
 from functools import partial
 from typing import Any
@@ -29,8 +29,8 @@ _LEAST_FILTER_NOISE = 0.1
 class ExplorationCore:
     """``worlds`` single-robot worlds with a lidar and SLAM, stepped together.
 
-    World ``i`` depends on nothing but its own generator and commands: not on the other worlds, nor on their number, nor on the
-    number of threads.
+    World ``i`` depends on nothing but its own generator and commands: not on the other worlds, nor on their number, nor
+    on the number of threads.
 
     Args:
         worlds: Number of worlds.
@@ -167,11 +167,12 @@ class ExplorationCore:
     @property
     def completeness(self) -> NDArray[np.float64]:
         """Map completeness (worlds,), known ∩ K over K, from 0 to 1."""
-        return self.maps.covered / self.wanted_cells[self.plan]
+        share: NDArray[np.float64] = self.maps.covered / self.wanted_cells[self.plan]
+        return share
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
-        named = {
+        named: dict[str, NDArray[Any]] = {
             "poses": self.physics.poses, "plan": self.plan, "streams": self.streams, "ranges": self.ranges,
             "scans": self.scans, "dead_reckoning": self.dead_reckoning, "collision": self.collision,
             "path_length": self.path_length, "true_path_length": self.true_path_length,

@@ -1,4 +1,4 @@
-"""Episodes in a batch of exploration worlds: rewards, endings, observations and infos; shared by batch and single environment."""
+"""Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
 import math
 from collections.abc import Iterable, Sequence

@@ -38,8 +38,8 @@ class Observer(Protocol):
 class PaperObserver:
     """The paper's state s_t = [O_t, a_(t-1), r_(t-1)] (eq. 4).
 
-    Five beams over the maximum range, the previous action (number over 2; continuous: both parts mapped to [0, 1]), and the
-    completeness, or for the uncertainty reward the entropy over ln N; every entry in [0, 1].
+    Five beams over the maximum range, the previous action (number over 2; continuous: both parts mapped to [0, 1]), and
+    the completeness, or for the uncertainty reward the entropy over ln N; every entry in [0, 1].
 
     Args:
         action_parts: Numbers that the previous action takes up.
@@ -58,7 +58,8 @@ class PaperObserver:
 
     def pick(self, batch: NDArray[np.float32], world: int) -> NDArray[np.float32]:
         """Row ``world``."""
-        return batch[world]
+        row: NDArray[np.float32] = batch[world]
+        return row
 
     def put(self, batch: NDArray[np.float32], world: int, source: NDArray[np.float32]) -> None:
         """Overwrite row ``world``."""
@@ -68,8 +69,8 @@ class PaperObserver:
 class MapObserver:
     """A dictionary: ``map``, ``scan``, ``covariance``, ``state``.
 
-    - ``map`` (3, 64, 64) uint8: 6.4 m × 6.4 m of the believed map around the believed pose, the robot in the middle, heading
-      up; 255 where a pixel holds an occupied cell, a free cell, and no known cell at all (three channels).
+    - ``map`` (3, 64, 64) uint8: 6.4 m × 6.4 m of the believed map around the believed pose, the robot in the middle,
+      heading up; 255 where a pixel holds an occupied cell, a free cell, and no known cell at all (three channels).
     - ``scan`` (360,) float32: all beams over the maximum range, the first one straight ahead, counter-clockwise.
     - ``covariance`` (6,) float32: xx, xy, xθ, yy, yθ, θθ of the pose's covariance [m², m rad, rad²].
     - ``state`` float32: previous action (as in the paper's observation), completeness, entropy over ln N.
@@ -142,8 +143,8 @@ def crop_maps(
                 y = poses[w, 1] + sin * ahead + cos * left - origins[w, 1]
                 wall = free = False
                 for k in range(4):  # the four cells that a pixel of twice their size holds
-                    c = int(math.floor((x + (half_cell if k & 1 else -half_cell)) / RESOLUTION))
-                    r = int(math.floor((y + (half_cell if k & 2 else -half_cell)) / RESOLUTION))
+                    c = math.floor((x + (half_cell if k & 1 else -half_cell)) / RESOLUTION)
+                    r = math.floor((y + (half_cell if k & 2 else -half_cell)) / RESOLUTION)
                     if 0 <= r < rows and 0 <= c < columns:
                         wall = wall or occupancy[w, r, c] == 100
                         free = free or occupancy[w, r, c] == 0

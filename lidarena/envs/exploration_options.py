@@ -33,8 +33,8 @@ class ExplorationOptions:
     """Keywords of ``lidarena/Exploration-v0`` and ``lidarena/Env1-v0`` … ``Env4-v0``.
 
     Attributes:
-        map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them from which
-            every reset draws one.
+        map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them
+            from which every reset draws one.
         reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
         observation: ``"da_slam"`` (the paper's) or ``"map"`` (a dictionary with an egocentric picture of the map).
         action: ``"discrete"`` (the paper's three) or ``"continuous"``.

@@ -14,7 +14,7 @@ EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {
 
 
 def make_single(max_episode_steps: int | None = None, **keywords: Any) -> ExplorationEnv:
-    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: ``gym.make(id, max_episode_steps=…)`` never gets here."""
+    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
     return ExplorationEnv(max_episode_steps=max_episode_steps, **keywords)
 
 

@@ -1,14 +1,16 @@
 """Running compiled kernels on disjoint ranges of worlds at once.
 
-The kernels release the interpreter lock, so plain threads serve; unlike an OpenMP region they may be started in a process
-that was forked, they compile in half the time, and a batch of one calls its kernel directly. (Asking numba for its number of
-threads would start OpenMP and, with it, undo the number of threads that PyTorch was given.)
+The kernels release the interpreter lock, so plain threads serve; unlike an OpenMP region they may be started in a
+process that was forked, they compile in half the time, and a batch of one calls its kernel directly. (Asking numba for
+its number of threads would start OpenMP and, with it, undo the number of threads that PyTorch was given.)
 """
 
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
+from itertools import pairwise
+from typing import Any, cast
 
 from numba import config
 
@@ -16,11 +18,11 @@ from lidarena.world.refusals import ConfigError
 
 _CHUNKS_PER_THREAD = 2
 """Worlds differ in cost; smaller ranges keep the threads busy to the end."""
-_threads = int(config.NUMBA_NUM_THREADS)
+_threads = int(cast(Any, config).NUMBA_NUM_THREADS)  # numba sets its attributes at run time
 
 
 def set_num_threads(count: int) -> None:
-    """Set how many threads step a batch's worlds; at first all cores, or ``NUMBA_NUM_THREADS``. No result depends on it.
+    """Set how many threads step a batch's worlds: at first all cores, or ``NUMBA_NUM_THREADS``; results stay the same.
 
     Raises:
         ConfigError: ``count`` is not a whole number of at least 1.
@@ -32,7 +34,7 @@ def set_num_threads(count: int) -> None:
 
 
 def for_ranges(count: int, work: Callable[[int, int], None]) -> None:
-    """Call ``work(first, last)`` for ranges that together cover 0 … count - 1, on the threads of ``set_num_threads``."""
+    """Call ``work(first, last)`` for ranges that together cover 0 … count - 1, on ``set_num_threads``'s threads."""
     threads = min(_threads, count)
     if threads <= 1:
         work(0, count)
@@ -40,7 +42,7 @@ def for_ranges(count: int, work: Callable[[int, int], None]) -> None:
     chunks = min(threads * _CHUNKS_PER_THREAD, count)
     borders = [count * k // chunks for k in range(chunks + 1)]
     executor = _executor(os.getpid(), threads)
-    for future in [executor.submit(work, a, b) for a, b in zip(borders, borders[1:], strict=False)]:
+    for future in [executor.submit(work, a, b) for a, b in pairwise(borders)]:
         future.result()
 
 

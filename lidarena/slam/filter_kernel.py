@@ -39,8 +39,8 @@ def step_filters(
 ) -> None:
     """Advance the filters of worlds first … last - 1 by one odometry reading and, where due, one scan.
 
-    A filter that has processed no scan yet starts with this one. (Starting is not a kernel of its own: both would be compiled
-    with the same callees, and that is what takes the time.)
+    A filter that has processed no scan yet starts with this one. (Starting is not a kernel of its own: both would be
+    compiled with the same callees, and that is what takes the time.)
 
     Args:
         first: First world.
@@ -127,7 +127,7 @@ def update(
     state: FilterState,
     maps: OccupancyMaps,
 ) -> None:
-    """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample where N_eff is low."""
+    """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample at low N_eff."""
     beams = scan.shape[0]
     points, flat = np.empty((beams, 5)), np.empty(beams, np.bool_)
     count = extract_points(scan, directions, max_range, points, flat)
@@ -174,8 +174,9 @@ def _likeliest_motion(
 ) -> None:
     """Which of the first particles' sampled motions since the last scan fits the first particle's map best (3,).
 
-    What the odometry got wrong is the same for all particles: matching starts each of them where the one before it ended, and
-    the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were needed.
+    What the odometry got wrong is the same for all particles: matching starts each of them where the one before it
+    ended, and the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were
+    needed.
     """
     pose = np.empty(3)
     least = math.inf
@@ -289,7 +290,7 @@ def _publish(
 
 @leaf
 def _best_particle(w: int, slot: int, now: int, parameters: FilterParameters, state: FilterState) -> int:
-    """The likeliest particle, or the likeliest descendant of the published one unless it is ``loyalty`` times less likely."""
+    """The likeliest particle, or the published one's likeliest heir unless that is ``loyalty`` times less likely."""
     best = 0
     for i in range(parameters.particles):
         if state.weights[w, i] > state.weights[w, best]:

@@ -1,4 +1,4 @@
-"""Mapping with known poses: what is left of SLAM when the robot is told where it is (``slam="truth"``, for ablations)."""
+"""Mapping with known poses: what is left of SLAM when the robot knows where it is (``slam="truth"``, for ablations)."""
 
 import math
 
@@ -62,7 +62,7 @@ class KnownPoseMapper:
         scans: NDArray[np.float32],
         poses: NDArray[np.float64],
     ) -> None:
-        """Advance maps first … last - 1 by one motion (W, 3) and, where due, the scan (W, beams) at ``poses`` (W, 3)."""
+        """Advance maps first … last - 1 by a motion (W, 3) and, where due, the scan (W, beams) at ``poses`` (W, 3)."""
         _map_scans(
             first, last, duration, self._resolution, self._max_range, self._directions, self._parameters,
             readings, scans, poses, self.since, self.maps,

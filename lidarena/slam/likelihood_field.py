@@ -1,11 +1,11 @@
 """The particles' maps: likelihood fields of the walls they have seen, each wall remembering which way it faces.
 
-A cell holds exp(−d²/2σ²), d the distance of its centre to the nearest end point, in 12 bits, and in 4 bits the direction of
-that wall's normal. A point is compared only with walls that face its own way: the two faces of a thin wall, which lie
-closer together than the field is wide, never attract each other.
+A cell holds exp(−d²/2σ²), d the distance of its centre to the nearest end point, in 12 bits, and in 4 bits the
+direction of that wall's normal. A point is compared only with walls that face its own way: the two faces of a thin
+wall, which lie closer together than the field is wide, never attract each other.
 
-Every particle has its own field, but particles that share a past share the tiles that have not changed since: a field is a
-table of tiles, copying a particle copies the table, and a shared tile is copied when it is first written to.
+Every particle has its own field, but particles that share a past share the tiles that have not changed since: a field
+is a table of tiles, copying a particle copies the table, and a shared tile is copied when it is first written to.
 """
 
 import math
@@ -27,8 +27,8 @@ ROUND_UP = 10.0 * SECTORS + 0.5
 """Added to a direction in sectors so that cutting off its fraction rounds it; whole turns do not count."""
 TILE_BITS = 4
 TILE = 1 << TILE_BITS
-"""Cells along a tile's side. A tile is stored with a rim of one cell that repeats its neighbours', so that the 3 × 3 cells
-around any of its own are at hand."""
+"""Cells along a tile's side. A tile is stored with a rim of one cell that repeats its neighbours', so that the 3 × 3
+cells around any of its own are at hand."""
 _REACH = 4
 """Cells from an end point up to which it is stamped; 0.2 m is 2.5 σ."""
 _SHIFTS = 8
@@ -41,7 +41,7 @@ point's cell."""
 
 
 def _bumps() -> NDArray[np.uint16]:
-    """Stamps (row shift, column shift, row, column): the Gaussian in the upper 12 bits, room for a direction in the lower 4."""
+    """Stamps (row shift, column shift, row, column): the Gaussian in the upper 12 bits, 4 left for a direction."""
     shift = (np.arange(_SHIFTS) + 0.5) / _SHIFTS - 0.5
     away = np.arange(-_REACH, _REACH + 1)[None, :] - shift[:, None]
     line = np.exp(-0.5 * (away * CELL / SIGMA) ** 2)
@@ -115,7 +115,7 @@ def copy_field(fields: Fields, w: int, source: int, target: int) -> None:
 
 
 @leaf
-def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> int:
+def _own_tile(fields: Fields, w: int, particle: int, a: int, b: int) -> np.int64:
     """Index of the tile at (a, b) after making sure that this particle alone uses it."""
     old = fields.table[w, particle, a, b]
     if old != 0 and fields.references[w, old] == 1:
@@ -190,7 +190,7 @@ def register_points(
         x = pose[0] + cos * points[i, 0] - sin * points[i, 1]
         y = pose[1] + sin * points[i, 0] + cos * points[i, 1]
         u, v = (x - origin[0]) / resolution - 0.5, (y - origin[1]) / resolution - 0.5
-        column, row = int(math.floor(u + 0.5)), int(math.floor(v + 0.5))
+        column, row = math.floor(u + 0.5), math.floor(v + 0.5)
         sector = np.int64(turn + points[i, 4])
         if field_at(cells, table, column, row, sector) < _FRESH:
             _stamp(fields, cells, w, particle, u, v, sector & (SECTORS - 1))
@@ -208,10 +208,10 @@ def _stamp(
 ) -> None:
     """Raise the cells around (u, v), also where a tile's rim repeats them, to the Gaussian of their distance to it.
 
-    ``cells`` is world w's tiles in one row; the Gaussian is looked up at the nearest of ``_SHIFTS``² places within a cell.
+    ``cells`` is world w's tiles in one row; the Gaussian is looked up at the nearest of ``_SHIFTS``² places in a cell.
     """
     a_count, b_count = fields.table.shape[2], fields.table.shape[3]
-    column, row = int(math.floor(u + 0.5)), int(math.floor(v + 0.5))
+    column, row = math.floor(u + 0.5), math.floor(v + 0.5)
     if not (0 <= column < b_count * TILE and 0 <= row < a_count * TILE):
         return
     bump = _BUMPS[np.int64((v - row + 0.5) * _SHIFTS), np.int64((u - column + 0.5) * _SHIFTS)]

@@ -1,7 +1,7 @@
 """The published map: an occupancy grid that counts, for every cell, how often beams ended in it and passed it.
 
-A scan that was traced can be taken back exactly, since the counts are integers: when another particle turns out to be the
-best, only the scans in which its past differs are traced anew (gmapping traces its whole past instead).
+A scan that was traced can be taken back exactly, since the counts are integers: when another particle turns out to be
+the best, only the scans in which its past differs are traced anew (gmapping traces its whole past instead).
 """
 
 import math
@@ -21,8 +21,9 @@ class OccupancyMaps(NamedTuple):
     """Occupancy grids of a batch, ``(worlds, rows, columns)``, row 0 at the smallest y.
 
     Attributes:
-        visits: (worlds, rows, columns) int32: beams that reached a cell, times two, plus one where the cell is occupied. (With that
-            bit the innermost loop knows from a single number that a cell stays what it is: known and free.)
+        visits: (worlds, rows, columns) int32: beams that reached a cell, times two, plus one where the cell is
+            occupied. (With that bit the innermost loop knows from a single number that a cell stays what it is: known
+            and free.)
         hits: (worlds, rows, columns) int32: beams that ended in a cell.
         occupancy: int8: -1 unknown, 0 free, 100 occupied.
         wanted: (plans, rows, columns) uint8: 1 where a known cell counts as covered, else 0.
@@ -95,13 +96,13 @@ def trace_scan(
     visits, hits, occupancy = maps.visits[world], maps.hits[world], maps.occupancy[world]
     wanted = maps.wanted[maps.plan[world]]
     rows, columns = occupancy.shape
-    c0, r0 = int(math.floor(start_u)), int(math.floor(start_v))
+    c0, r0 = math.floor(start_u), math.floor(start_v)
     inside = 0 <= c0 < columns and 0 <= r0 < rows
     change = 0
     for k in range(scan.shape[0]):
         reach = min(scan[k], max_range) / resolution
-        c1 = int(math.floor(start_u + reach * (directions[0, k] * cos - directions[1, k] * sin)))
-        r1 = int(math.floor(start_v + reach * (directions[0, k] * sin + directions[1, k] * cos)))
+        c1 = math.floor(start_u + reach * (directions[0, k] * cos - directions[1, k] * sin))
+        r1 = math.floor(start_v + reach * (directions[0, k] * sin + directions[1, k] * cos))
         if inside and 0 <= c1 < columns and 0 <= r1 < rows:
             change += _pass_cells(visits, hits, occupancy, wanted, c0, r0, c1, r1, sign)
             visits[r1, c1] += 2 * sign
@@ -126,7 +127,7 @@ def _pass_cells(
 ) -> int:
     """Count a beam in every cell of the line from (r0, c0) up to, without, (r1, c1), both inside the grid.
 
-    The innermost loop of all: one step along the longer axis, in fixed point, without a test that could be made outside.
+    The innermost loop of all: one step along the longer axis, in fixed point, free of tests that fit outside.
     """
     dc, dr = c1 - c0, r1 - r0
     steps = max(abs(dc), abs(dr))
@@ -185,4 +186,4 @@ def _reassess(
     occupancy[r, c] = -1 if reached == 0 else 100 if occupied else 0
     if was_known == (reached > 0):
         return 0
-    return -np.int64(wanted[r, c]) if was_known else np.int64(wanted[r, c])
+    return -int(np.int64(wanted[r, c])) if was_known else int(np.int64(wanted[r, c]))

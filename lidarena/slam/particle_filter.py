@@ -1,8 +1,9 @@
 """Rao-Blackwellised particle filter: every particle a trajectory with its own map (Grisetti et al. 2007).
 
-Between scans the particles follow the odometry with sampled noise. When the robot has moved, turned or waited enough, each
-particle is matched against its own map and drawn anew from the Gaussian around the match (the improved proposal), weighted
-by how well scan and odometry agree with its map, and the set is resampled only where N_eff has fallen (selective resampling).
+Between scans the particles follow the odometry with sampled noise. When the robot has moved, turned or waited enough,
+each particle is matched against its own map and drawn anew from the Gaussian around the match (the improved proposal),
+weighted by how well scan and odometry agree with its map, and the set is resampled only where N_eff has fallen
+(selective resampling).
 """
 
 import numpy as np

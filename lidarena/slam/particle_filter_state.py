@@ -19,9 +19,9 @@ class FilterParameters(NamedTuple):
         angular_update: … or turned this far [rad], …
         temporal_update: … or when more than this has passed [s]; infinity switches the clock off.
         resample_share: Resample when N_eff falls below this share of N.
-        likelihood_gain: Factor on the scans' log-likelihood. Beams err together, and all of them against a map that erred before:
-            taken at face value they end every doubt and the filter grows overconfident. With this factor the error of the
-            pose is as large as its covariance says (``benchmarks/filter_accuracy.py``).
+        likelihood_gain: Factor on the scans' log-likelihood. Beams err together, and all of them against a map that
+            erred before: taken at face value they end every doubt and the filter grows overconfident. With this factor
+            the error of the pose is as large as its covariance says (``benchmarks/filter_accuracy.py``).
         loyalty: The published map leaves its particle's descendants only for one this many times as likely.
         history: Scans that the published map can take back.
         noise: The odometry's noise, per reading.
@@ -41,7 +41,7 @@ class FilterParameters(NamedTuple):
 
 
 class FilterState(NamedTuple):
-    """Arrays of a batch of filters: ``W`` worlds, ``N`` particles, ``H`` scans of history, grids of ``R`` × ``C`` cells.
+    """Arrays of a batch of filters: ``W`` worlds, ``N`` particles, ``H`` past scans, grids of ``R`` × ``C`` cells.
 
     Attributes:
         fields: The particles' likelihood fields.

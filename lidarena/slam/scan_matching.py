@@ -1,8 +1,9 @@
 """Scan matching: Gauss-Newton on the likelihood field, with the odometry as prior.
 
-Minimises ½ (x − x̄)ᵀ Ω (x − x̄) + (1/s²) Σ ρ(e_i(x)), where e_i is the distance of point i to the nearest known wall along the
-point's own normal and ρ is Welsch's function, σ²(1 − exp(−e²/2σ²)): points on walls that the map does not know weigh nothing.
-Because the normal is the scan's and not the map's, a bare corridor gives no information along itself.
+Minimises ½ (x − x̄)ᵀ Ω (x − x̄) + (1/s²) Σ ρ(e_i(x)), where e_i is the distance of point i to the nearest known wall
+along the point's own normal and ρ is Welsch's function, σ²(1 − exp(−e²/2σ²)): points on walls that the map does not
+know weigh nothing. Because the normal is the scan's and not the map's, a bare corridor gives no information along
+itself.
 """
 
 import math
@@ -28,9 +29,9 @@ class MatcherParameters(NamedTuple):
         deviation: s, standard deviation of a point's distance to its wall, sensor and map together [m].
     """
 
-    points: int = 56
+    points: int = 48
     iterations: int = 8
-    tolerance: float = 1e-3
+    tolerance: float = 2e-3
     deviation: float = 0.02
 
 
@@ -87,7 +88,7 @@ def misfit(
     points: NDArray[np.float64],
     pose: NDArray[np.float64],
 ) -> float:
-    """Σ (1 − f) of ``points`` (n, 5) seen from ``pose`` (3,): how many of them are not on a known wall; see ``match``."""
+    """Σ (1 − f) of ``points`` (n, 5) seen from ``pose`` (3,): how many are not on a known wall; see ``match``."""
     return _linearise(tiles, table, origin[0], origin[1], resolution, points, pose, np.empty((3, 3)), np.empty(3))
 
 
@@ -105,9 +106,9 @@ def _linearise(
 ) -> float:
     """Sum Welsch-weighted normal equations into ``hessian`` (3, 3) and ``gradient`` (3,); returns Σ (1 − f).
 
-    Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous, where a
-    bilinear one jumps from cell to cell and keeps Gauss-Newton from settling. Flat, unsigned indices spare the tests for
-    negative ones.
+    Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous,
+    where a bilinear one jumps from cell to cell and keeps Gauss-Newton from settling. Flat, unsigned indices spare the
+    tests for negative ones.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     per_cell = 1.0 / resolution
@@ -152,7 +153,7 @@ def _linearise(
 
 @inlined
 def _spline(cells: NDArray[np.uint16], first: int, a: float, allowed: int) -> tuple[float, float]:
-    """Quadratic B-spline through three cells from ``first`` on, at ``a`` ∈ ±½ from the middle one, and its slope per cell."""
+    """Quadratic B-spline through three cells from ``first`` on, at ``a`` ∈ ±½ from the middle; and its slope."""
     k, one, two = np.uint64(first), np.uint64(1), np.uint64(2)
     f0 = facing(np.int64(cells[k]), allowed)
     f1 = facing(np.int64(cells[k + one]), allowed)
@@ -188,7 +189,8 @@ def _add_prior(
 def determinant(m: NDArray[np.float64]) -> float:
     """Determinant of a symmetric 3×3 matrix, at least 1e-300."""
     a, b, c, d, e, f = m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2]
-    return max(a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d), 1e-300)
+    value: float = max(a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d), 1e-300)
+    return value
 
 
 @leaf

@@ -32,8 +32,9 @@ def extract_points(
         scan: (beams,) ranges [m]; ``max_range`` and above means no return.
         directions: (2, beams) cos and sin of the beams' angles.
         max_range: [m].
-        points: (beams, 5) output in the sensor's frame: x, y [m], unit normal towards the sensor (where ``flat`` is False it only
-            points back along the beam), and the normal's direction in sectors (``likelihood_field.SECTORS`` to the turn).
+        points: (beams, 5) output in the sensor's frame: x, y [m], unit normal towards the sensor (where ``flat`` is
+            False it only points back along the beam), and the normal's direction in sectors
+            (``likelihood_field.SECTORS`` to the turn).
         flat: (beams,) output, whether the normal was fitted.
     """
     surface = np.empty(scan.shape[0], np.int64)

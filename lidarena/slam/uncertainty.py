@@ -8,8 +8,8 @@ from numpy.typing import NDArray
 from lidarena.world.kernels import leaf
 
 COVARIANCE_FLOOR = (4e-6, 4e-6, 1e-6)
-"""Added to the diagonal of a pose's covariance (m², m², rad²): what the scan matcher itself leaves open, 2 mm and 1 mrad,
-so that a filter whose particles coincide is certain but never singular."""
+"""Added to the diagonal of a pose's covariance (m², m², rad²): what the scan matcher itself leaves open, 2 mm
+and 1 mrad, so that a filter whose particles coincide is certain but never singular."""
 
 
 @leaf
@@ -18,7 +18,8 @@ def d_optimality(covariance: NDArray[np.float64]) -> float:
     a, b, c = covariance[0, 0], covariance[0, 1], covariance[0, 2]
     d, e, f = covariance[1, 1], covariance[1, 2], covariance[2, 2]
     determinant = a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d)
-    return max(determinant, 0.0) ** (1.0 / 3.0)
+    mean: float = max(determinant, 0.0) ** (1.0 / 3.0)
+    return mean
 
 
 def a_optimality(covariance: NDArray[np.float64]) -> float:

@@ -23,7 +23,7 @@ class Floorplan:
 
     Attributes:
         name: What messages and pictures call it.
-        edges: Boundary of the solid parts, ``(E, 4)`` as x1, y1, x2, y2 [m]; solid lies on the left when walking from 1 to 2.
+        edges: Boundary of the solid parts, ``(E, 4)`` as x1, y1, x2, y2 [m]; walking from 1 to 2 has solid on the left.
         circles: Round pillars, ``(C, 3)`` as x, y, radius [m].
         bounds: Extent of the drawing, x_min, y_min, x_max, y_max [m].
         start: Default start pose (x, y, theta) [m, m, rad].
@@ -179,7 +179,7 @@ class Floorplan:
 
     @property
     def _winding_outside(self) -> int:
-        """Winding number of free space: 0 for drawn plans; -1 for grids, whose outermost ring encloses the free part."""
+        """Winding number of free space: 0 for drawn plans; -1 for grids, whose outermost ring encloses what is free."""
         area = np.sum(self.edges[:, 0] * self.edges[:, 3] - self.edges[:, 1] * self.edges[:, 2]) / 2
         return -1 if area < 0 else 0
 

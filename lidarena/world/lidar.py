@@ -127,8 +127,8 @@ def _see_plan(
     inverse: NDArray[np.float64],
 ) -> None:
     """Raise ``inverse`` (beams,) to the inverse ranges of one plan's edges and circles near (x, y)."""
-    row = int(math.floor((y - scenery.tile_origin[plan, 1]) / TILE))
-    column = int(math.floor((x - scenery.tile_origin[plan, 0]) / TILE))
+    row = math.floor((y - scenery.tile_origin[plan, 1]) / TILE)
+    column = math.floor((x - scenery.tile_origin[plan, 0]) / TILE)
     row = min(max(row, 0), scenery.tile_shape[plan, 0] - 1)
     column = min(max(column, 0), scenery.tile_shape[plan, 1] - 1)
     tile = scenery.first_tile[plan] + row * scenery.tile_shape[plan, 1] + column
@@ -170,8 +170,8 @@ def _see_edge(
     high = math.atan2(ay, ax) * per_radian
     if high < low:
         high += beams
-    begin = int(math.ceil(low - _TOUCH))
-    end = int(math.floor(high + _TOUCH)) + 1
+    begin = math.ceil(low - _TOUCH)
+    end = math.floor(high + _TOUCH) + 1
     if begin < 0:
         begin, end = begin + beams, end + beams
     a, b = ey / cross, -ex / cross
@@ -205,7 +205,7 @@ def _see_circle(
     half = math.asin(radius / math.sqrt(squared)) * per_radian
     cos, sin = math.cos(theta), math.sin(theta)
     cx, cy = dx * cos + dy * sin, dy * cos - dx * sin
-    for n in range(int(math.ceil(middle - half)), int(math.floor(middle + half)) + 1):
+    for n in range(math.ceil(middle - half), math.floor(middle + half) + 1):
         k = n % beams
         along = cx * directions[0, k] + cy * directions[1, k]
         root = radius * radius - squared + along * along
@@ -223,7 +223,7 @@ def add_range_noise(
     ranges: NDArray[np.float64],
     scans: NDArray[np.float32],
 ) -> None:
-    """Fill ``scans`` (worlds, robots, beams) with noisy ranges; what exceeds ``max_range`` or met nothing reads ``max_range``.
+    """Fill ``scans`` (worlds, robots, beams) with noisy ranges; beyond ``max_range``, or without a hit, ``max_range``.
 
     Args:
         first: First world.
@@ -249,8 +249,9 @@ def _lay_out(plans: Sequence[Floorplan], max_range: float) -> Scenery:
     starts, items, first_tile, origins, shapes = [np.zeros(1, np.int64)], [], [], [], []
     tiles = edge_offset = circle_offset = 0
     for plan in plans:
-        low = np.floor(np.array(plan.bounds[:2]) / TILE) * TILE
-        columns, rows = (np.ceil((np.array(plan.bounds[2:]) - low) / TILE)).astype(int)
+        # beyond a rim as wide as the range no edge matters: a robot that left the drawing still sees its walls
+        low = np.floor((np.array(plan.bounds[:2]) - max_range) / TILE) * TILE
+        columns, rows = (np.ceil((np.array(plan.bounds[2:]) + max_range - low) / TILE)).astype(int)
         found_edges = _tile_edges(plan.edges, low[0], low[1], int(rows), int(columns), max_range)
         found_circles = _tile_circles(plan.circles, low, int(rows), int(columns), max_range)
         tile = np.concatenate([found_edges[:, 0], found_circles[:, 0]])

@@ -13,8 +13,8 @@ from lidarena.world.random_streams import normal
 class OdometryNoise(NamedTuple):
     """gmapping's motion model (openslam_gmapping, ``drawFromMotion``), per reading.
 
-    σ_x = srr |dx| + str |dθ| + 0.3 srr |dy|, σ_y = srr |dy| + str |dθ| + 0.3 srr |dx|, σ_θ = stt |dθ| + srt hypot(dx, dy), in
-    the frame of the robot before the motion. The defaults are turtlebot3_slam's.
+    σ_x = srr |dx| + str |dθ| + 0.3 srr |dy|, σ_y = srr |dy| + str |dθ| + 0.3 srr |dx|,
+    σ_θ = stt |dθ| + srt hypot(dx, dy), in the frame of the robot before the motion. The defaults are turtlebot3_slam's.
 
     Attributes:
         srr: Translation as a function of translation [m/m].

@@ -68,8 +68,8 @@ class Physics:
     def advance(self, commands: NDArray[np.float64], duration: float, clearance: NDArray[np.float64]) -> None:
         """Drive every robot for ``duration`` seconds and update ``poses``.
 
-        Each step moves a body along the chord of the arc that the wheels describe, so a step of any length ends where the
-        arc ends; robots that can touch nothing meanwhile take a single one.
+        Each step moves a body along the chord of the arc that the wheels describe, so a step of any length ends where
+        the arc ends; robots that can touch nothing meanwhile take a single one.
 
         Args:
             commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
@@ -97,8 +97,8 @@ class Physics:
     ) -> None:
         """Drive among obstacles, in short steps.
 
-        A step of the solver moves the bodies first, then takes up velocities and clips them at contacts. The wheels' velocity
-        therefore goes in between, through pymunk's callback, and one step more than there are moves is needed.
+        A step of the solver moves the bodies first, then takes up velocities and clips them at contacts. The wheels'
+        velocity therefore goes in between, through pymunk's callback, and one step more than there are moves is needed.
         """
         steps = math.ceil(duration / self.spec.substep - 1e-9)
         for body, (speed, rate) in zip(bodies, commands, strict=True):
@@ -137,7 +137,7 @@ def _set_chord(body: pymunk.Body, heading: float, speed: float, rate: float, dt:
 
 
 def _turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
-    """pymunk's velocity callback: what the wheels do, before contacts have their say."""
+    """Velocity callback of pymunk: what the wheels do, before contacts have their say."""
     _set_chord(body, body.angle, speed, rate, dt)
 
 

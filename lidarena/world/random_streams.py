@@ -40,7 +40,7 @@ _EDGE, _DENSITY = _ziggurat_layers()
 def next_word(state: NDArray[np.uint64]) -> np.uint64:
     """Next 64 random bits of xoshiro256++ (Blackman & Vigna); ``state`` (4,) moves on."""
     total = uint64(state[0] + state[3])
-    word = uint64(((total << uint64(23)) | (total >> uint64(41))) + state[0])
+    word: np.uint64 = uint64(((total << uint64(23)) | (total >> uint64(41))) + state[0])
     shifted = uint64(state[1] << uint64(17))
     state[2] ^= state[0]
     state[3] ^= state[1]
@@ -54,7 +54,8 @@ def next_word(state: NDArray[np.uint64]) -> np.uint64:
 @inlined
 def uniform(state: NDArray[np.uint64]) -> float:
     """Uniform in [0, 1) with 53 random bits."""
-    return np.int64(next_word(state) >> uint64(11)) * (1.0 / 9007199254740992.0)
+    share: float = np.int64(next_word(state) >> uint64(11)) * (1.0 / 9007199254740992.0)
+    return share
 
 
 @inlined
@@ -62,14 +63,14 @@ def normal(state: NDArray[np.uint64]) -> float:
     """Standard normal by the ziggurat method (Marsaglia & Tsang 2000)."""
     word = next_word(state)
     layer = np.int64(word & uint64(255))
-    x = (np.int64(word) >> np.int64(11)) * (1.0 / 4503599627370496.0) * _EDGE[layer]
+    x: float = (np.int64(word) >> np.int64(11)) * (1.0 / 4503599627370496.0) * _EDGE[layer]
     if abs(x) < _EDGE[layer + 1]:  # 99 in 100; kept apart so that it is inlined
         return x
     return _rim(state, x, layer)
 
 
 @leaf
-def _rim(state: NDArray[np.uint64], x: float, layer: int) -> float:
+def _rim(state: NDArray[np.uint64], x: float, layer: np.int64) -> float:
     """A normal whose first draw ``x`` fell into the rim of its layer."""
     while True:
         if layer == 0:

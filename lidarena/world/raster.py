@@ -64,7 +64,7 @@ def rasterize(
 def _count_crossings(
     edges: NDArray[np.float64], x0: float, y0: float, resolution: float, winding: NDArray[np.int32]
 ) -> None:
-    """Add each edge's crossing of every row's centre line to ``winding`` (rows, columns + 1), to be summed along the row."""
+    """Add each edge's crossings of the rows' centre lines to ``winding`` (rows, columns + 1), to be summed by row."""
     rows, columns = winding.shape[0], winding.shape[1] - 1
     for k in range(edges.shape[0]):
         x1, y1, x2, y2 = edges[k]
@@ -72,12 +72,12 @@ def _count_crossings(
             continue
         sign = 1 if y2 < y1 else -1  # walking down has the solid part to the right: winding + 1 from there on
         low, high = min(y1, y2), max(y1, y2)
-        first = max(0, int(math.ceil((low - y0) / resolution - 0.5)))
-        last = min(rows - 1, int(math.ceil((high - y0) / resolution - 0.5)) - 1)
+        first = max(0, math.ceil((low - y0) / resolution - 0.5))
+        last = min(rows - 1, math.ceil((high - y0) / resolution - 0.5) - 1)
         for row in range(first, last + 1):
             y = y0 + (row + 0.5) * resolution
             x = x1 + (y - y1) / (y2 - y1) * (x2 - x1)
-            column = int(math.ceil((x - x0) / resolution - 0.5))
+            column = math.ceil((x - x0) / resolution - 0.5)
             winding[row, min(max(column, 0), columns)] += sign
 
 

@@ -4,7 +4,7 @@ from collections.abc import Iterable
 from difflib import get_close_matches
 
 
-class Refusal(ValueError):
+class Refusal(ValueError):  # noqa: N818 - the family's name; the members that are raised end in Error
     """Input that is refused; its message is one sentence that names the value and what is allowed.
 
     The command-line programs print the message and end with exit code 2.

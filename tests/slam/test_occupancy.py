@@ -42,7 +42,8 @@ def test_only_cells_on_the_beams_are_known(ranges: list[float], pose: tuple) -> 
         away, angle = math.hypot(x, y), math.atan2(y, x) - pose[2]
         k = round(angle / (2 * np.pi / 24)) % 24
         aside = abs(away * math.sin(angle - ANGLES[k]))
-        assert aside < 0.08 or away < 0.3  # the line joins the cells' centres: half a cell beside the beam, and half a cell
+        # the line joins the cells' centres: half a cell beside the beam, and half a cell
+        assert aside < 0.08 or away < 0.3
         assert away < min(max(ranges), 3.5) + 0.08
 
 

@@ -44,7 +44,7 @@ def matched(start: np.ndarray, information: np.ndarray, plan: Floorplan = ROOM, 
 @settings(max_examples=25, deadline=None)
 @given(st.floats(-0.08, 0.08), st.floats(-0.08, 0.08), st.floats(-0.06, 0.06))
 def test_a_displaced_pose_is_pulled_back(dx: float, dy: float, dt: float) -> None:
-    pose, posterior, _ = matched(TRUE + (dx, dy, dt), np.eye(3))
+    pose, posterior, _ = matched(TRUE + np.array([dx, dy, dt]), np.eye(3))
     assert pose[:2] == pytest.approx(TRUE[:2], abs=0.012)
     assert pose[2] == pytest.approx(TRUE[2], abs=0.01)
     assert np.linalg.eigvalsh(posterior).min() > 0
@@ -52,7 +52,7 @@ def test_a_displaced_pose_is_pulled_back(dx: float, dy: float, dt: float) -> Non
 
 def test_the_likelihood_prefers_the_prior_that_agrees_with_the_map() -> None:
     stiff = np.diag([1e5, 1e5, 1e5])
-    here, away = matched(TRUE, stiff)[2], matched(TRUE + (0.1, 0.0, 0.0), stiff)[2]
+    here, away = matched(TRUE, stiff)[2], matched(TRUE + np.array([0.1, 0.0, 0.0]), stiff)[2]
     assert here > away
 
 

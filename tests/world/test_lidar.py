@@ -62,7 +62,9 @@ def test_every_beam_agrees_with_pymunk_within_a_millimetre(name: str) -> None:
     st.lists(st.tuples(st.floats(1, 9), st.floats(1, 9), st.floats(0.05, 0.8)), max_size=4),
     st.floats(-3.1, 3.1),
 )
-def test_a_ray_never_passes_a_wall(walls: list[tuple[float, ...]], circles: list[tuple[float, ...]], theta: float) -> None:
+def test_a_ray_never_passes_a_wall(
+    walls: list[tuple[float, ...]], circles: list[tuple[float, ...]], theta: float
+) -> None:
     frame = [(0, 0, 10, 0), (10, 0, 10, 10), (10, 10, 0, 10), (0, 10, 0, 0)]
     plan = Floorplan.from_shapes("drawn", (0, 0, 10, 10), walls=[*frame, *walls], circles=circles, start=None)
     x, y, _ = plan.start
@@ -80,6 +82,13 @@ def test_other_robots_are_seen_as_discs() -> None:
     assert ranges[0, 0, 0] == pytest.approx(2.0 - 0.105)
     assert ranges[0, 1, 180] == pytest.approx(2.0 - 0.105)
     assert ranges[0, 0, 180] == 3.5
+
+
+def test_a_robot_outside_the_drawing_sees_its_walls() -> None:
+    plan = load_floorplan("env1")
+    ranges = Lidar([plan]).cast(np.array([[[-2.0, 2.0, 0.0]]]), np.zeros(1, np.int64))[0, 0]
+    assert ranges[0] == pytest.approx(pymunk_range(pymunk_space(plan), -2.0, 2.0, 0.0, 3.5), abs=1e-9)
+    assert ranges[180] == 3.5
 
 
 def test_worlds_of_one_lidar_may_have_different_plans() -> None:

@@ -37,7 +37,7 @@ def test_deviations_are_gmappings() -> None:
 def test_readings_scatter_around_the_motion_as_the_model_says() -> None:
     worlds = 4000
     before = np.zeros((worlds, 1, 3))
-    after = before + (0.1, 0.0, 0.02)
+    after = before + np.array([0.1, 0.0, 0.02])
     streams = np.stack([seed_stream(np.random.default_rng(k)) for k in range(worlds)])
     readings = np.zeros_like(before)
     read_odometry(0, worlds, before, after, OdometryNoise(), streams, readings)
