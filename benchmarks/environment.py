@@ -42,7 +42,7 @@ class Wanderer:
 
 
 class NaiveWorlds:
-    """What one would write first: a loop over worlds, five pymunk steps, one ``segment_query_first`` a beam, no SLAM."""
+    """What one would write first: a loop over worlds, 5 pymunk steps, one ``segment_query_first`` a beam, no SLAM."""
 
     def __init__(self, plan: Floorplan, worlds: int) -> None:
         self._plan = plan

@@ -55,7 +55,7 @@ class Driver:
     """
 
     robot: Robot
-    inflation: Inflation = field(default_factory=lambda: Inflation(lethal_radius=0.2, radius=0.6))
+    inflation: Inflation = field(default_factory=lambda: Inflation(lethal_radius=0.22, radius=0.6))
     arrival: float = 0.3
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     goal: tuple[float, float] | None = None

@@ -17,6 +17,7 @@ from lidarena.planning.steering import Commands, loiter_gap, move, steer, tighte
 from lidarena.planning.surroundings import Surroundings, gap_at, line_is_free
 
 _SHORTEST_CARROT = 0.4  # the carrot lies at least so far ahead on the path, in sight or not (m)
+_TOLERANCE = 0.03  # so much less clearance than planned is no reason to plan anew: poses jitter (m)
 _SHORTEST_LOOK = 0.2  # nearer to the robot a path is not checked (m)
 
 
@@ -81,8 +82,8 @@ class PathFollower:
     """
 
     commands: Commands
-    margin: float = 0.18
-    least_margin: float = 0.14
+    margin: float = 0.2
+    least_margin: float = 0.15
     last_margin: float = 0.12
     preferred: float = 0.4
     lookahead: float = 1.5
@@ -125,7 +126,7 @@ class PathFollower:
         for margin, lookahead in attempts:
             sequence = self._towards(path, pose, around, margin, lookahead)
             if len(sequence):
-                self._queue, self._kept = sequence, min(margin, self.least_margin)
+                self._queue, self._kept = sequence, margin
                 return True
         return False
 
@@ -151,12 +152,12 @@ class PathFollower:
     def is_clear(self, pose: NDArray[np.float64], around: Surroundings, horizon: int = 8) -> bool:
         """Return whether the next ``horizon`` planned commands keep clear, driven from ``pose``.
 
-        They must keep ``least_margin``, or the smaller clearance that the robot has or that they were planned with.
+        They must keep the clearance that they were planned with, or the smaller one that the robot has already.
         """
         at = np.asarray(pose, np.float64)
         here = gap_at(around.gap, around.closed, around.frame, at[0], at[1])
         least = tightest(around.gap, around.closed, around.frame, at, self.commands.moves, self._queue[:horizon])
-        return bool(least >= min(self.least_margin, self._kept, max(here, 0.0)) - 0.01)
+        return bool(least >= min(self._kept - _TOLERANCE, max(here, 0.0) - 0.01))
 
     def next(self) -> int | None:
         """Take the next planned command; None if there is none."""

@@ -233,16 +233,13 @@ def search_commands(
     speed, rate = velocities[:, 0].max(), np.abs(velocities[:, 1]).max()
     headings = math.ceil(_TWO_PI / max(_TURN_EDGE, np.abs(moves[:, 2]).max()) - 1e-6)
     table = np.full(side * side * headings, -1, np.int32)
-    poses = np.empty((most, 3))
-    spent = np.empty(most)
-    keys = np.empty(most)
+    poses, spent, keys = np.empty((most, 3)), np.zeros(most), np.empty(most)
     before = np.full((most, 2), -1, np.int64)
     heap = np.empty(most, np.int64)
     where = np.full(most, -1, np.int64)
     done = np.zeros(most, np.bool_)
     here = np.empty(3)
     poses[0] = start
-    spent[0] = 0.0
     keys[0] = _ahead(start[0], start[1], start[2], target, reach, speed, rate)
     table[_bin(start, start, side, headings)] = 0
     count, size = 1, push(heap, where, keys, 0, 0)
@@ -301,7 +298,7 @@ def steer(
     commands: Commands,
     margin: float = 0.17,
     preferred: float = 0.4,
-    weight: float = 6.0,
+    weight: float = 10.0,
     reach: float = 0.15,
     window: float = 2.5,
     most_states: int = 6_000,
