@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing, facing_mask
-from lidarena.world.kernels import fast_leaf, inlined, kernel, leaf
+from lidarena.world.kernels import inlined, kernel, leaf
 
 _OVER_RELAXATION = 1.4
 """A wall that was stamped from several poses has a flattened crest: plain steps fall short, by half in the mean."""
@@ -92,7 +92,7 @@ def misfit(
     return _linearise(tiles, table, origin[0], origin[1], resolution, points, pose, np.empty((3, 3)), np.empty(3))
 
 
-@fast_leaf
+@leaf
 def _linearise(
     tiles: NDArray[np.uint16],
     table: NDArray[np.int32],

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.kernels import fast_leaf, kernel, leaf
+from lidarena.world.kernels import kernel, leaf
 from lidarena.world.random_streams import normal
 
 TILE = 1.0
@@ -180,7 +180,7 @@ def _see_edge(
         _raise_run(0, end - beams, a, b, directions, inverse)
 
 
-@fast_leaf
+@leaf
 def _raise_run(
     begin: int, end: int, a: float, b: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
 ) -> None:
