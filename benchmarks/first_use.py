@@ -1,5 +1,4 @@
-"""How long a newcomer waits: ``gym.make`` + ``reset`` + ``step`` with nothing compiled yet, the second time, and
-whether both compute the same to the bit.
+"""How long a newcomer waits: nothing compiled yet, and the second time; and whether both compute the same to the bit.
 
 python benchmarks/first_use.py
 """
