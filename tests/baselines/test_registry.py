@@ -22,9 +22,9 @@ def fake(**options):
 
 
 def test_names_are_known_and_every_one_can_be_made():
-    assert {"ealc", "frontier", "random"} <= set(names())
+    assert {"frontier", "random"} <= set(names())
     assert names() == sorted(names())
-    for name in ("ealc", "frontier", "random"):
+    for name in ("frontier", "random"):
         assert isinstance(make(name, fake()), Policy)
 
 
