@@ -1,8 +1,7 @@
 """The ways in which this package compiles.
 
 numba counts references to arrays whenever one is passed to a compiled function, with atomic operations that cost more
-than most of the functions here. A function that allocates nothing needs no counting (``_nrt=False``): measured on the
-field's look-up, 46 ns become 11.
+than most of the functions here. A function that allocates nothing needs no counting (``_nrt=False``).
 
 None of them lets the compiler reorder sums (``fastmath``): the process that compiled a kernel and those that load it
 from the cache would then differ in the last bit.
