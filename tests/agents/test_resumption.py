@@ -49,7 +49,7 @@ def test_a_killed_training_goes_on_from_its_last_checkpoint(tmp_path: Path, monk
     straight = train(small(tmp_path / "straight"), progress=False)
     with monkeypatch.context() as patch:
         press_ctrl_c(patch, at_step=350, times=2)
-        with pytest.raises(TrainingStopped, match="from step 256"):
+        with pytest.raises(TrainingStopped, match=r"from step \d+"):
             train(small(tmp_path / "killed"), progress=False)
     with (tmp_path / "killed" / "progress.csv").open("a") as stream:
         stream.write("38")  # the row that was being written

@@ -51,7 +51,7 @@ def press_ctrl_c(monkeypatch: pytest.MonkeyPatch, at_step: int, times: int = 1, 
         pressed = 0
 
         def update(self, step: int, summary: str = "") -> None:
-            while step >= at_step and Keyboard.pressed < times:  # all at once: how often this is called depends on the clock
+            while step >= at_step and Keyboard.pressed < times:  # at once: calls come by the clock
                 Keyboard.pressed += 1
                 signal.raise_signal(number)
 
