@@ -14,11 +14,12 @@ from lidarena.slam.particle_filter import ParticleFilters
 from lidarena.slam.particle_filter_state import FilterParameters
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
 from lidarena.world.floorplan import START_CLEARANCE
-from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise, cast_beams
+from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
-from lidarena.world.odometry import OdometryNoise, move_poses, read_odometry
-from lidarena.world.physics import Physics, RobotSpec
+from lidarena.world.odometry import OdometryNoise
+from lidarena.world.physics import Physics, RobotSpec, may_touch
 from lidarena.world.random_streams import seed_stream
+from lidarena.world.sensors import empty_sensors, read_sensors
 
 RESOLUTION = 0.05
 """Side of a map cell, gmapping's δ [m]."""
@@ -38,12 +39,7 @@ class ExplorationCore:
 
     Attributes:
         physics: The true poses; everything that the robot may know is in the attributes below.
-        scans: (worlds, 1, 360) measured ranges, float32 [m].
-        readings: (worlds, 1, 3) odometry of the last step.
-        dead_reckoning: (worlds, 3) the readings added up.
-        collision: (worlds,) whether some beam is shorter than the robot's safety distance.
-        path_length: (worlds,) length of the odometry's path [m].
-        true_path_length: (worlds,) length of the true path [m].
+        sensors: Scans, odometry, paths, collisions.
         estimate: (worlds, 3) pose; covariance (worlds, 3, 3); criteria (worlds, 3): D-optimality, entropy, N_eff.
         wanted_cells: (plans,) size of K of each floor plan.
     """
@@ -62,17 +58,11 @@ class ExplorationCore:
         self._make_slam(worlds)
 
     def _allocate(self, worlds: int) -> None:
-        beams = self.beam.beams
         self.worlds = worlds
         self.plan = np.zeros(worlds, np.int64)
         self.streams = np.zeros((worlds, 4), np.uint64)
-        self.ranges = np.zeros((worlds, 1, beams))
-        self.scans = np.zeros((worlds, 1, beams), np.float32)
-        self.readings = np.zeros((worlds, 1, 3))
-        self.dead_reckoning = np.zeros((worlds, 1, 3))
-        self.collision = np.zeros(worlds, np.bool_)
-        self.path_length = np.zeros(worlds)
-        self.true_path_length = np.zeros(worlds)
+        self._near = np.zeros(worlds, np.bool_)
+        self.sensors = empty_sensors(worlds, self.beam.beams)
 
     def _make_slam(self, worlds: int) -> None:
         rows, columns = np.max([coverage.wanted.shape for coverage in self._coverage], axis=0)
@@ -105,14 +95,14 @@ class ExplorationCore:
         self.streams[world] = seed_stream(rng)
         self.plan[world] = plan
         self.physics.place(world, self.plans[plan], [pose])
-        self.dead_reckoning[world, 0] = pose
-        self.readings[world] = 0.0
-        self.path_length[world] = self.true_path_length[world] = 0.0
-        self._sense(world, world + 1)
+        sensors = self.sensors
+        sensors.dead_reckoning[world, 0] = pose
+        sensors.path_length[world] = sensors.true_path_length[world] = 0.0
+        self._sense(self.physics.poses, world, world + 1)
         slam = self.filters or self.mapper
         assert slam is not None
         origin = self._coverage[plan].origin
-        slam.start(world, plan, origin, self.physics.poses[world, 0].copy(), self.scans[:, 0])
+        slam.start(world, plan, origin, self.physics.poses[world, 0].copy(), sensors.scans[:, 0])
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
         if self.options.start != "random":
@@ -128,41 +118,25 @@ class ExplorationCore:
             commands: (worlds, 2) speed [m/s] and turn rate [rad/s].
         """
         before = self.physics.poses.copy()
-        clearance = self.ranges.min(axis=2)
-        self.physics.advance(commands[:, None, :], self.options.decision_period, clearance)
-        moved = self.physics.poses[:, 0] - before[:, 0]
-        self.true_path_length += np.sqrt(moved[:, 0] ** 2 + moved[:, 1] ** 2)
+        driven, period = commands[:, None, :], self.options.decision_period
+        may_touch(driven, period, self.robot.radius, self.sensors.ranges, self.lidar.directions, self._near)
+        self.physics.advance(driven, period, self._near)
         for_ranges(self.worlds, partial(self._perceive, before))
 
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Read the sensors of worlds first … last - 1 and run their SLAM."""
-        poses, here = self.physics.poses, slice(first, last)
-        read_odometry(first, last, before, poses, self._noise, self.streams, self.readings)
-        move_poses(first, last, self.dead_reckoning, self.readings)
-        reading = self.readings[here, 0]
-        self.path_length[here] += np.sqrt(reading[:, 0] ** 2 + reading[:, 1] ** 2)
-        self._sense(first, last)
-        period, readings, scans = self.options.decision_period, self.readings[:, 0], self.scans[:, 0]
+        self._sense(before, first, last)
+        period, readings, scans = self.options.decision_period, self.sensors.readings[:, 0], self.sensors.scans[:, 0]
         if self.filters is not None:
             self.filters.step(first, last, period, readings, scans, self.streams)
         elif self.mapper is not None:
-            self.mapper.step(first, last, period, readings, scans, poses[:, 0])
+            self.mapper.step(first, last, period, readings, scans, self.physics.poses[:, 0])
 
-    def _sense(self, first: int, last: int) -> None:
-        reach = self.beam.max_range
-        cast_beams(
-            first,
-            last,
-            self.physics.poses,
-            self.plan,
-            0.0,
-            self.lidar.scenery,
-            self.lidar.directions,
-            reach,
-            self.ranges,
-        )
-        add_range_noise(first, last, self.beam.noise, reach, self.streams, self.ranges, self.scans)
-        self.collision[first:last] = self.ranges[first:last, 0].min(axis=1) < START_CLEARANCE
+    def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
+        read_sensors(
+            first, last, before, self.physics.poses, self.plan, self._noise, self.beam, START_CLEARANCE,
+            self.lidar.scenery, self.lidar.directions, self.streams, self.sensors,
+        )  # fmt: skip
 
     @property
     def completeness(self) -> NDArray[np.float64]:
@@ -172,11 +146,8 @@ class ExplorationCore:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
-        named: dict[str, NDArray[Any]] = {
-            "poses": self.physics.poses, "plan": self.plan, "streams": self.streams, "ranges": self.ranges,
-            "scans": self.scans, "dead_reckoning": self.dead_reckoning, "collision": self.collision,
-            "path_length": self.path_length, "true_path_length": self.true_path_length,
-        }  # fmt: skip
+        named: dict[str, NDArray[Any]] = {"poses": self.physics.poses, "plan": self.plan, "streams": self.streams}
+        named |= self.sensors._asdict()
         named |= {f"maps.{name}": array for name, array in self.maps._asdict().items() if name != "wanted"}
         if self.filters is not None:
             state = self.filters.state._asdict()

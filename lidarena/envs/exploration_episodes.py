@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
 from typing import Any
 
 import gymnasium as gym
@@ -55,7 +56,7 @@ class ExplorationEpisodes:
 
     def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
         """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
-        with announced_compilation():
+        with nullcontext() if self._compiled else announced_compilation():
             for world in worlds:
                 self.core.reset_world(world, generators[world])
                 self._steps[world] = 0
@@ -73,16 +74,13 @@ class ExplorationEpisodes:
             ActionError: See ``drive_actions.commands_of``.
         """
         commands = commands_of(self.options.action, actions, self.core.worlds)
-        if self._compiled:
+        with nullcontext() if self._compiled else announced_compilation():
             self.core.step(commands)
-        else:
-            with announced_compilation():
-                self.core.step(commands)
-            self._compiled = True
+        self._compiled = True
         self._steps += 1
         self._remember(np.asarray(actions, dtype=np.float64))
         rewards = self._reward()
-        terminated = self.core.collision.copy()
+        terminated = self.core.sensors.collision.copy()
         if self.options.stop_at is not None:
             terminated |= self._completeness >= self.options.stop_at
         limit = self.options.max_episode_steps
@@ -100,7 +98,7 @@ class ExplorationEpisodes:
     def _reward(self) -> NDArray[np.float64]:
         """The paper's eq. 2 or 3: a crash, or else the gain in percentage points, or 1 + tanh(η / D)."""
         before, self._completeness = self._completeness, self.core.completeness
-        alive = ~self.core.collision
+        alive = ~self.core.sensors.collision
         if self.options.reward == "completeness":
             gain = 100.0 * (self._completeness - before)
         else:
@@ -125,17 +123,17 @@ class ExplorationEpisodes:
             "d_optimality": core.criteria[:, 0].copy(),
             "entropy": core.criteria[:, 1].copy(),
             "n_eff": core.criteria[:, 2].copy(),
-            "path_length": core.path_length.copy(),
+            "path_length": core.sensors.path_length.copy(),
             "time": self._steps * self.options.decision_period,
-            "collision": core.collision.copy(),
-            "odometry_pose": core.dead_reckoning[:, 0].copy(),
+            "collision": core.sensors.collision.copy(),
+            "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
             "reward_terms": {name: term.copy() for name, term in self._terms.items()},
             "map": view,
             "resolution": np.full(core.worlds, RESOLUTION),
             "origin": core.maps.origin.copy(),
         }
         if self.options.expose_truth:
-            truth = {"pose": core.physics.poses[:, 0].copy(), "path_length": core.true_path_length.copy()}
+            truth = {"pose": core.physics.poses[:, 0].copy(), "path_length": core.sensors.true_path_length.copy()}
             info["truth"] = truth
         return info
 

@@ -52,7 +52,7 @@ class PaperObserver:
 
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
         """``(worlds, 6 + k)`` float32."""
-        beams = core.scans[:, 0, FRONT_BEAMS] / core.beam.max_range
+        beams = core.sensors.scans[:, 0, FRONT_BEAMS] / core.beam.max_range
         last = scaled_entropy(core) if self._uncertain else core.completeness
         return np.concatenate([beams, previous, last[:, None]], axis=1).astype(np.float32)
 
@@ -98,7 +98,7 @@ class MapObserver:
         last = np.stack([core.completeness, scaled_entropy(core)], axis=1)
         return {
             "map": picture,
-            "scan": core.scans[:, 0] / np.float32(core.beam.max_range),
+            "scan": core.sensors.scans[:, 0] / np.float32(core.beam.max_range),
             "covariance": core.covariance[:, rows, columns].astype(np.float32),
             "state": np.concatenate([previous, last], axis=1).astype(np.float32),
         }

@@ -56,7 +56,7 @@ class PathRecorder:
 
 
 def _positions(core: ExplorationCore, world: int) -> NDArray[np.float64]:
-    poses = (core.physics.poses[world, 0], core.estimate[world], core.dead_reckoning[world, 0])
+    poses = (core.physics.poses[world, 0], core.estimate[world], core.sensors.dead_reckoning[world, 0])
     return np.array([pose[:2] for pose in poses])
 
 
@@ -82,7 +82,7 @@ def draw_exploration(core: ExplorationCore, recorder: PathRecorder, world: int) 
 
 
 def _draw_scan(canvas: Canvas, core: ExplorationCore, world: int, pose: NDArray[np.float64]) -> None:
-    scan = core.scans[world, 0].astype(np.float64)
+    scan = core.sensors.scans[world, 0].astype(np.float64)
     hit = scan < core.beam.max_range
     angles = np.arange(len(scan)) * (2 * np.pi / len(scan)) + pose[2]
     points = pose[:2] + scan[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -109,8 +109,8 @@ def _draw_belief(canvas: Canvas, core: ExplorationCore, world: int) -> None:
 def _headline(core: ExplorationCore, world: int, name: str) -> str:
     d_optimality, _, n_eff = core.criteria[world]
     return (
-        f"{name}   completeness {100 * core.completeness[world]:.1f} %   path {core.path_length[world]:.1f} m   "
-        f"D-opt {d_optimality:.1e}   N_eff {n_eff:.0f}{'   COLLISION' if core.collision[world] else ''}"
+        f"{name}   completeness {100 * core.completeness[world]:.1f} %   path {core.sensors.path_length[world]:.1f} m   "
+        f"D-opt {d_optimality:.1e}   N_eff {n_eff:.0f}{'   COLLISION' if core.sensors.collision[world] else ''}"
     )
 
 

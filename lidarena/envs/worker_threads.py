@@ -3,9 +3,13 @@
 The kernels release the interpreter lock, so plain threads serve; unlike an OpenMP region they may be started in a
 process that was forked, they compile in half the time, and a batch of one calls its kernel directly. (Asking numba for
 its number of threads would start OpenMP and, with it, undo the number of threads that PyTorch was given.)
+
+The calling thread works along: with as many helpers as cores and a caller that only waits, the threads drive each other
+from core to core, and stepping took 1.6 times as long.
 """
 
 import os
+from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
@@ -16,7 +20,7 @@ from numba import config
 
 from lidarena.world.refusals import ConfigError
 
-_CHUNKS_PER_THREAD = 2
+_CHUNKS_PER_THREAD = 8
 """Worlds differ in cost; smaller ranges keep the threads busy to the end."""
 _threads = int(cast(Any, config).NUMBA_NUM_THREADS)  # numba sets its attributes at run time
 
@@ -41,12 +45,28 @@ def for_ranges(count: int, work: Callable[[int, int], None]) -> None:
         return
     chunks = min(threads * _CHUNKS_PER_THREAD, count)
     borders = [count * k // chunks for k in range(chunks + 1)]
-    executor = _executor(os.getpid(), threads)
-    for future in [executor.submit(work, a, b) for a, b in pairwise(borders)]:
-        future.result()
+    waiting = deque(pairwise(borders))
+    executor = _executor(os.getpid(), threads - 1)
+    helpers = [executor.submit(_work_off, waiting, work) for _ in range(threads - 1)]
+    try:
+        _work_off(waiting, work)
+    finally:
+        waiting.clear()  # after an error nobody begins anything more
+        for helper in helpers:
+            helper.result()
+
+
+def _work_off(waiting: deque[tuple[int, int]], work: Callable[[int, int], None]) -> None:
+    """Take ranges and work on them until there are none left."""
+    while True:
+        try:
+            first, last = waiting.popleft()
+        except IndexError:
+            return
+        work(first, last)
 
 
 @lru_cache(maxsize=4)
-def _executor(process: int, threads: int) -> ThreadPoolExecutor:
+def _executor(process: int, helpers: int) -> ThreadPoolExecutor:
     """One pool a process: threads do not survive a fork."""
-    return ThreadPoolExecutor(threads, thread_name_prefix=f"lidarena-{process}")
+    return ThreadPoolExecutor(helpers, thread_name_prefix=f"lidarena-{process}")

@@ -8,21 +8,25 @@ from numpy.typing import NDArray
 from lidarena.slam.copying import copy_matrix, copy_vector
 from lidarena.slam.likelihood_field import clear_fields, copy_field, register_points
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
-from lidarena.slam.particle_filter_state import FilterParameters, FilterState
-from lidarena.slam.scan_matching import invert, match, misfit
+from lidarena.slam.particle_filter_state import FilterParameters, FilterState, Scratch
+from lidarena.slam.scan_matching import match, misfit
 from lidarena.slam.scan_points import extract_points
+from lidarena.slam.scan_outline import Outlines
+from lidarena.slam.symmetric import Symmetric, inverse, load, rotated
 from lidarena.slam.uncertainty import d_optimality, pose_moments, weight_entropy
-from lidarena.world.kernels import kernel, leaf
+from lidarena.world.kernels import leaf
 from lidarena.world.odometry import deviations, move, relative_motion
 from lidarena.world.random_streams import normal, uniform
 
 _SAMPLED_STARTS = 8
 """Sampled motions that are tried before the first particle is matched."""
+_REGISTERED = 2
+"""Every how manyth point of a scan is used; which ones, changes from scan to scan."""
 _LEAST_VARIANCE = 1e-8
 """Added to the odometry's covariance (m², rad²), so that a robot at rest has an invertible prior."""
 
 
-@kernel
+@leaf
 def step_filters(
     first: int,
     last: int,
@@ -36,6 +40,7 @@ def step_filters(
     streams: NDArray[np.uint64],
     state: FilterState,
     maps: OccupancyMaps,
+    scratch: Scratch,
 ) -> None:
     """Advance the filters of worlds first … last - 1 by one odometry reading and, where due, one scan.
 
@@ -55,16 +60,18 @@ def step_filters(
         streams: (W, 4) random streams.
         state: The filters.
         maps: The published maps.
+        scratch: Of which row ``first`` is used.
     """
+    s = first
     for w in range(first, last):
         if state.updates[w] == 0:
-            _begin(w, resolution, max_range, directions, parameters, scans[w], state, maps)
+            _begin(w, resolution, max_range, directions, parameters, scans[w], s, state, maps, scratch)
             _summarise(w, state)
             continue
         predict(w, duration, readings[w], parameters, streams[w], state)
         due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
         if due or state.since[w, 2] > parameters.temporal_update:
-            update(w, resolution, max_range, directions, parameters, scans[w], streams[w], state, maps)
+            update(w, resolution, max_range, directions, parameters, scans[w], streams[w], s, state, maps, scratch)
         _summarise(w, state)
 
 
@@ -115,7 +122,7 @@ def _compound_covariance(
     covariance[2, 2] += vt
 
 
-@kernel
+@leaf
 def update(
     w: int,
     resolution: float,
@@ -124,32 +131,29 @@ def update(
     parameters: FilterParameters,
     scan: NDArray[np.float32],
     stream: NDArray[np.uint64],
+    s: int,
     state: FilterState,
     maps: OccupancyMaps,
+    scratch: Scratch,
 ) -> None:
     """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample at low N_eff."""
-    beams = scan.shape[0]
-    points, flat = np.empty((beams, 5)), np.empty(beams, np.bool_)
-    count = extract_points(scan, directions, max_range, points, flat)
-    chosen = _choose(points, flat, count, parameters.matcher.points)
-    local = np.empty((3, 3))
-    covariance = np.empty((3, 3))
-    copy_matrix(covariance, state.motion_covariance[w])
-    for k in range(3):
-        covariance[k, k] += _LEAST_VARIANCE
-    invert(covariance, local)
-    prior, information, posterior = np.empty(3), np.empty((3, 3)), np.empty((3, 3))
-    motion = np.empty(3)
-    _likeliest_motion(w, resolution, chosen, motion, state, maps)
+    points, motion, prior = scratch.points[s], scratch.poses[s, 0], scratch.poses[s, 1]
+    first = state.updates[w] % _REGISTERED  # neighbours lie within each other's stamp: take turns
+    count = extract_points(
+        scan, directions, max_range, first, _REGISTERED, scratch.means[s], scratch.numbers[s], points, scratch.flat[s]
+    )
+    chosen = scratch.chosen[s, : _choose(s, count, scratch)]
+    local = inverse(load(state.motion_covariance[w], _LEAST_VARIANCE))
+    _likeliest_motion(w, resolution, chosen, motion, prior, state, maps)
     for i in range(parameters.particles):
         copy_vector(prior, state.anchors[w, i])
-        _rotate(local, prior[2], information)
+        information = rotated(local, prior[2])
         copy_vector(state.particles[w, i], prior)
         move(state.particles[w, i], motion[0], motion[1], motion[2])
         move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
-        likelihood = match(
+        likelihood, posterior = match(
             state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen, parameters.matcher,
-            prior, information, state.particles[w, i], posterior,
+            prior, information, state.particles[w, i],
         )  # fmt: skip
         motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
         state.log_weights[w, i] += parameters.likelihood_gain * likelihood
@@ -157,18 +161,19 @@ def update(
         register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
         copy_vector(state.anchors[w, i], state.particles[w, i])
     _normalise(w, state)
-    _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
+    _publish(w, resolution, max_range, directions, parameters, scan, state, maps, scratch.outlines, s)
     if state.criteria[w, 2] < parameters.resample_share * parameters.particles:
-        _resample(w, stream, state)
+        _resample(w, stream, scratch.numbers[s], state)
     _forget_motion(w, state)
 
 
-@kernel
+@leaf
 def _likeliest_motion(
     w: int,
     resolution: float,
     points: NDArray[np.float64],
     motion: NDArray[np.float64],
+    pose: NDArray[np.float64],
     state: FilterState,
     maps: OccupancyMaps,
 ) -> None:
@@ -176,9 +181,8 @@ def _likeliest_motion(
 
     What the odometry got wrong is the same for all particles: matching starts each of them where the one before it
     ended, and the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were
-    needed.
+    needed. ``pose`` (3,) is overwritten.
     """
-    pose = np.empty(3)
     least = math.inf
     for i in range(min(_SAMPLED_STARTS, state.particles.shape[1])):
         dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
@@ -190,41 +194,29 @@ def _likeliest_motion(
             motion[0], motion[1], motion[2] = dx, dy, dtheta
 
 
-@kernel
-def _choose(points: NDArray[np.float64], flat: NDArray[np.bool_], count: int, most: int) -> NDArray[np.float64]:
-    """At most ``most`` points with a normal, evenly over the scan (n, 5)."""
-    usable, total = np.empty(count, np.int64), 0
+@leaf
+def _choose(s: int, count: int, scratch: Scratch) -> int:
+    """Copy points with a normal to ``chosen``, evenly over the scan; returns how many."""
+    usable, total = scratch.numbers[s], 0
     for i in range(count):
-        if flat[i]:
+        if scratch.flat[s, i]:
             usable[total] = i
             total += 1
-    chosen = np.empty((min(most, total), 5))
-    for i in range(chosen.shape[0]):
-        copy_vector(chosen[i], points[usable[i * total // chosen.shape[0]]])
-    return chosen
+    most = min(scratch.chosen.shape[1], total)
+    for i in range(most):
+        copy_vector(scratch.chosen[s, i], scratch.points[s, usable[i * total // most]])
+    return most
 
 
 @leaf
-def _rotate(local: NDArray[np.float64], theta: float, out: NDArray[np.float64]) -> None:
-    """Information (3, 3) of a motion in the frame of heading ``theta``, expressed in the world's frame."""
-    cos, sin = math.cos(theta), math.sin(theta)
-    a, b, c, d, e = local[0, 0], local[0, 1], local[0, 2], local[1, 1], local[1, 2]
-    out[0, 0] = cos * cos * a - 2.0 * cos * sin * b + sin * sin * d
-    out[1, 1] = sin * sin * a + 2.0 * cos * sin * b + cos * cos * d
-    out[0, 1] = out[1, 0] = cos * sin * (a - d) + (cos * cos - sin * sin) * b
-    out[0, 2] = out[2, 0] = cos * c - sin * e
-    out[1, 2] = out[2, 1] = sin * c + cos * e
-    out[2, 2] = local[2, 2]
-
-
-@leaf
-def _draw(pose: NDArray[np.float64], information: NDArray[np.float64], stream: NDArray[np.uint64]) -> None:
+def _draw(pose: NDArray[np.float64], information: Symmetric, stream: NDArray[np.uint64]) -> None:
     """Replace ``pose`` (3,) by a sample of the Gaussian around it, given its information matrix A = L Lᵀ: x + L⁻ᵀ z."""
-    l00 = math.sqrt(information[0, 0])
-    l10, l20 = information[1, 0] / l00, information[2, 0] / l00
-    l11 = math.sqrt(max(information[1, 1] - l10 * l10, 1e-12))
-    l21 = (information[2, 1] - l20 * l10) / l11
-    l22 = math.sqrt(max(information[2, 2] - l20 * l20 - l21 * l21, 1e-12))
+    xx, xy, xt, yy, yt, tt = information
+    l00 = math.sqrt(xx)
+    l10, l20 = xy / l00, xt / l00
+    l11 = math.sqrt(max(yy - l10 * l10, 1e-12))
+    l21 = (yt - l20 * l10) / l11
+    l22 = math.sqrt(max(tt - l20 * l20 - l21 * l21, 1e-12))
     z2 = normal(stream) / l22
     z1 = (normal(stream) - l21 * z2) / l11
     z0 = (normal(stream) - l10 * z1 - l20 * z2) / l00
@@ -262,6 +254,8 @@ def _publish(
     scan: NDArray[np.float32],
     state: FilterState,
     maps: OccupancyMaps,
+    outlines: Outlines,
+    s: int,
 ) -> None:
     """Remember the scan and trace it from the best particle, tracing anew the past scans in which that one differs."""
     history = parameters.history
@@ -273,15 +267,15 @@ def _publish(
         state.node_parents[w, slot, i] = state.ancestors[w, i]
         state.ancestors[w, i] = i
     best = _best_particle(w, slot, now, parameters, state)
-    trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, 1)
+    trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, 1, outlines, s)
     state.published[w, slot] = best
     parent = np.int64(state.node_parents[w, slot, best])
     past = now - 1
     while past >= 0 and past > now - history and state.published[w, past % history] != parent:
         slot = past % history
         shown, node = state.published[w, slot], state.node_poses[w, slot]
-        trace_scan(maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, -1)
-        trace_scan(maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, 1)
+        trace_scan(maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, -1, outlines, s)
+        trace_scan(maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, 1, outlines, s)
         state.published[w, slot] = parent
         parent = np.int64(state.node_parents[w, slot, parent])
         past -= 1
@@ -307,11 +301,15 @@ def _best_particle(w: int, slot: int, now: int, parameters: FilterParameters, st
     return best
 
 
-@kernel
-def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
-    """Systematic resampling; survivors stay where they are, their copies overwrite the dead."""
+@leaf
+def _resample(w: int, stream: NDArray[np.uint64], copies: NDArray[np.int64], state: FilterState) -> None:
+    """Systematic resampling; survivors stay where they are, their copies overwrite the dead.
+
+    ``copies`` (at least N,) is overwritten.
+    """
     n = state.weights.shape[1]
-    copies = np.zeros(n, np.int64)
+    for i in range(n):
+        copies[i] = 0
     offset, total, drawn = uniform(stream), 0.0, 0
     for i in range(n):
         total += state.weights[w, i]
@@ -328,8 +326,9 @@ def _resample(w: int, stream: NDArray[np.uint64], state: FilterState) -> None:
             state.ancestors[w, dead] = i
             copy_field(state.fields, w, i, dead)
             dead += 1
-    state.log_weights[w] = 0.0
-    state.weights[w] = 1.0 / n
+    for i in range(n):
+        state.log_weights[w, i] = 0.0
+        state.weights[w, i] = 1.0 / n
 
 
 @leaf
@@ -339,7 +338,7 @@ def _summarise(w: int, state: FilterState) -> None:
     state.criteria[w, 0] = d_optimality(state.covariance[w])
 
 
-@kernel
+@leaf
 def _begin(
     w: int,
     resolution: float,
@@ -347,12 +346,16 @@ def _begin(
     directions: NDArray[np.float64],
     parameters: FilterParameters,
     scan: NDArray[np.float32],
+    s: int,
     state: FilterState,
     maps: OccupancyMaps,
+    scratch: Scratch,
 ) -> None:
     """Start world w's filter with its first scan (beams,), all particles where they were put."""
-    points = np.empty((scan.shape[0], 5))
-    count = extract_points(scan, directions, max_range, points, np.empty(scan.shape[0], np.bool_))
+    points = scratch.points[s]
+    count = extract_points(
+        scan, directions, max_range, 0, 1, scratch.means[s], scratch.numbers[s], points, scratch.flat[s]
+    )
     clear_fields(state.fields, w)
     for i in range(parameters.particles):
         if i == 0:
@@ -364,7 +367,7 @@ def _begin(
         state.log_weights[w, i] = 0.0
     _forget_motion(w, state)
     _normalise(w, state)
-    _publish(w, resolution, max_range, directions, parameters, scan, state, maps)
+    _publish(w, resolution, max_range, directions, parameters, scan, state, maps, scratch.outlines, s)
 
 
 @leaf

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters
+from lidarena.slam.scan_outline import Outlines, empty_outlines
 from lidarena.world.kernels import leaf
 
 
@@ -37,6 +38,7 @@ class KnownPoseMapper:
     ) -> None:
         self.maps: OccupancyMaps = empty_maps(worlds, wanted)
         self.since = np.zeros((worlds, 3))
+        self._outlines = empty_outlines(worlds, wanted.shape[1], directions.shape[1], max_range, resolution)
         self._parameters = parameters or FilterParameters()
         self._directions, self._max_range, self._resolution = directions, max_range, resolution
 
@@ -51,7 +53,10 @@ class KnownPoseMapper:
         """Start one map anew with its row of ``scans`` (W, beams), taken at ``pose`` (3,)."""
         clear_map(self.maps, world, plan, origin)
         self.since[world] = 0.0
-        trace_scan(self.maps, world, self._resolution, pose, scans[world], self._directions, self._max_range, 1)
+        trace_scan(
+            self.maps, world, self._resolution, pose, scans[world], self._directions, self._max_range, 1,
+            self._outlines, world,
+        )  # fmt: skip
 
     def step(
         self,
@@ -65,7 +70,7 @@ class KnownPoseMapper:
         """Advance maps first … last - 1 by a motion (W, 3) and, where due, the scan (W, beams) at ``poses`` (W, 3)."""
         _map_scans(
             first, last, duration, self._resolution, self._max_range, self._directions, self._parameters,
-            readings, scans, poses, self.since, self.maps,
+            readings, scans, poses, self.since, self.maps, self._outlines,
         )  # fmt: skip
 
 
@@ -83,6 +88,7 @@ def _map_scans(
     poses: NDArray[np.float64],
     since: NDArray[np.float64],
     maps: OccupancyMaps,
+    outlines: Outlines,
 ) -> None:
     """Kernel of ``KnownPoseMapper.step``."""
     for w in range(first, last):
@@ -91,5 +97,5 @@ def _map_scans(
         since[w, 2] += duration
         due = since[w, 0] >= parameters.linear_update or since[w, 1] >= parameters.angular_update
         if due or since[w, 2] > parameters.temporal_update:
-            trace_scan(maps, w, resolution, poses[w], scans[w], directions, max_range, 1)
+            trace_scan(maps, w, resolution, poses[w], scans[w], directions, max_range, 1, outlines, first)
             since[w] = 0.0

@@ -186,13 +186,13 @@ def register_points(
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
     cells, table = fields.tiles[w].reshape(-1), fields.table[w, particle]
+    per_cell = 1.0 / resolution
+    start_u, start_v = (pose[0] - origin[0]) * per_cell, (pose[1] - origin[1]) * per_cell
     for i in range(points.shape[0]):
-        x = pose[0] + cos * points[i, 0] - sin * points[i, 1]
-        y = pose[1] + sin * points[i, 0] + cos * points[i, 1]
-        u, v = (x - origin[0]) / resolution - 0.5, (y - origin[1]) / resolution - 0.5
-        column, row = math.floor(u + 0.5), math.floor(v + 0.5)
+        u = start_u + (cos * points[i, 0] - sin * points[i, 1]) * per_cell
+        v = start_v + (sin * points[i, 0] + cos * points[i, 1]) * per_cell
         sector = np.int64(turn + points[i, 4])
-        if field_at(cells, table, column, row, sector) < _FRESH:
+        if field_at(cells, table, math.floor(u), math.floor(v), sector) < _FRESH:
             _stamp(fields, cells, w, particle, u, v, sector & (SECTORS - 1))
 
 
@@ -211,10 +211,10 @@ def _stamp(
     ``cells`` is world w's tiles in one row; the Gaussian is looked up at the nearest of ``_SHIFTS``² places in a cell.
     """
     a_count, b_count = fields.table.shape[2], fields.table.shape[3]
-    column, row = math.floor(u + 0.5), math.floor(v + 0.5)
+    column, row = math.floor(u), math.floor(v)
     if not (0 <= column < b_count * TILE and 0 <= row < a_count * TILE):
         return
-    bump = _BUMPS[np.int64((v - row + 0.5) * _SHIFTS), np.int64((u - column + 0.5) * _SHIFTS)]
+    bump = _BUMPS[np.int64((v - row) * _SHIFTS), np.int64((u - column) * _SHIFTS)]
     left_most, lowest = column - _REACH, row - _REACH
     c0, c1 = max(left_most, 0), min(column + _REACH + 1, b_count * TILE)
     r0, r1 = max(lowest, 0), min(row + _REACH + 1, a_count * TILE)

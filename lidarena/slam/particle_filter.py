@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lidarena.slam.filter_kernel import step_filters
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
-from lidarena.slam.particle_filter_state import FilterParameters, FilterState, empty_state
+from lidarena.slam.particle_filter_state import FilterParameters, FilterState, Scratch, empty_scratch, empty_state
 
 
 class ParticleFilters:
@@ -45,6 +45,9 @@ class ParticleFilters:
         rows, columns = wanted.shape[1:]
         self.maps: OccupancyMaps = empty_maps(worlds, wanted)
         self.state: FilterState = empty_state(worlds, rows, columns, directions.shape[1], self.parameters)
+        self._scratch: Scratch = empty_scratch(
+            worlds, rows, directions.shape[1], max_range, resolution, self.parameters
+        )
 
     def start(
         self,
@@ -83,5 +86,5 @@ class ParticleFilters:
         """
         step_filters(
             first, last, duration, self.resolution, self._max_range, self._directions, self.parameters,
-            readings, scans, streams, self.state, self.maps,
+            readings, scans, streams, self.state, self.maps, self._scratch,
         )  # fmt: skip

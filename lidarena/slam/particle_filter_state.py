@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import Fields, empty_fields
 from lidarena.slam.scan_matching import MatcherParameters
+from lidarena.slam.scan_outline import Outlines, empty_outlines
 from lidarena.world.odometry import OdometryNoise
 
 
@@ -38,6 +39,43 @@ class FilterParameters(NamedTuple):
     history: int = 256
     noise: OdometryNoise = OdometryNoise()
     matcher: MatcherParameters = MatcherParameters()
+
+
+class Scratch(NamedTuple):
+    """What a kernel works on within one call, one row for each world that a call may begin with: leaves no trace.
+
+    Attributes:
+        means: (W, beams, 2) the scan's averaged hits.
+        points: (W, beams, 5) those of them that are registered.
+        flat: (W, beams) which of them have a normal.
+        numbers: (W, beams or N) integers.
+        chosen: (W, n, 5) the points that are matched.
+        poses: (W, 2, 3) poses.
+        outlines: Of the scans that are traced.
+    """
+
+    means: NDArray[np.float64]
+    points: NDArray[np.float64]
+    flat: NDArray[np.bool_]
+    numbers: NDArray[np.int64]
+    chosen: NDArray[np.float64]
+    poses: NDArray[np.float64]
+    outlines: Outlines
+
+
+def empty_scratch(
+    worlds: int, rows: int, beams: int, max_range: float, resolution: float, parameters: FilterParameters
+) -> Scratch:
+    """Allocate it."""
+    return Scratch(
+        np.zeros((worlds, beams, 2)),
+        np.zeros((worlds, beams, 5)),
+        np.zeros((worlds, beams), np.bool_),
+        np.zeros((worlds, max(beams, parameters.particles)), np.int64),
+        np.zeros((worlds, parameters.matcher.points, 5)),
+        np.zeros((worlds, 2, 3)),
+        empty_outlines(worlds, rows, beams, max_range, resolution),
+    )
 
 
 class FilterState(NamedTuple):

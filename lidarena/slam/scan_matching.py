@@ -12,8 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing, facing_mask
-from lidarena.world.kernels import inlined, kernel, leaf
+from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing, facing_mask, field_at
+from lidarena.slam.symmetric import Symmetric, Vector, determinant, inverse, times
+from lidarena.world.kernels import inlined, leaf
 
 _OVER_RELAXATION = 1.4
 """A wall that was stamped from several poses has a flattened crest: plain steps fall short, by half in the mean."""
@@ -29,13 +30,13 @@ class MatcherParameters(NamedTuple):
         deviation: s, standard deviation of a point's distance to its wall, sensor and map together [m].
     """
 
-    points: int = 48
+    points: int = 32
     iterations: int = 8
     tolerance: float = 2e-3
     deviation: float = 0.02
 
 
-@kernel
+@leaf
 def match(
     tiles: NDArray[np.uint16],
     table: NDArray[np.int32],
@@ -44,11 +45,10 @@ def match(
     points: NDArray[np.float64],
     parameters: MatcherParameters,
     prior: NDArray[np.float64],
-    information: NDArray[np.float64],
+    information: Symmetric,
     pose: NDArray[np.float64],
-    posterior: NDArray[np.float64],
-) -> float:
-    """Move ``pose`` (3,) to the best match and return the log-likelihood of the scan under the map and the prior.
+) -> tuple[float, Symmetric]:
+    """Move ``pose`` (3,) to the best match; returns the scan's log-likelihood and the result's information matrix.
 
     The likelihood is Laplace's approximation of ∫ p(z | m, x) p(x | x̄, Ω) dx, the weight of FastSLAM 2 and gmapping's
     improved proposal (Grisetti et al. 2007, eq. 13), up to a constant that all particles share.
@@ -61,25 +61,25 @@ def match(
         points: (n, 5) the points to match, as ``scan_points.extract_points`` gives them.
         parameters: Settings.
         prior: (3,) x̄, the pose that the odometry predicts.
-        information: (3, 3) Ω, inverse covariance of the prior.
+        information: Ω, inverse covariance of the prior.
         pose: (3,) starting value; overwritten by the result.
-        posterior: (3, 3) output, information matrix of the result.
     """
-    step, gradient = np.empty(3), np.empty(3)
+    cells, names = tiles.reshape(-1), table.reshape(-1)
     missed = quadratic = 0.0
+    posterior = information
     for _ in range(parameters.iterations):
-        missed = _linearise(tiles, table, origin[0], origin[1], resolution, points, pose, posterior, gradient)
-        quadratic = _add_prior(parameters.deviation, prior, information, pose, posterior, gradient)
-        solve(posterior, gradient, step)
+        missed, hessian, gradient = _linearise(cells, names, table, origin[0], origin[1], resolution, points, pose)
+        quadratic, posterior, slope = _add_prior(parameters.deviation, prior, information, pose, hessian, gradient)
+        step = times(inverse(posterior), slope)
         for k in range(3):
             pose[k] += _OVER_RELAXATION * step[k]
         if abs(step[0]) + abs(step[1]) < parameters.tolerance and abs(step[2]) < parameters.tolerance:
             break
     fit = -missed * (SIGMA / parameters.deviation) ** 2
-    return fit - 0.5 * quadratic + 0.5 * math.log(determinant(information) / determinant(posterior))
+    return fit - 0.5 * quadratic + 0.5 * math.log(determinant(information) / determinant(posterior)), posterior
 
 
-@kernel
+@leaf
 def misfit(
     tiles: NDArray[np.uint16],
     table: NDArray[np.int32],
@@ -88,27 +88,39 @@ def misfit(
     points: NDArray[np.float64],
     pose: NDArray[np.float64],
 ) -> float:
-    """Σ (1 − f) of ``points`` (n, 5) seen from ``pose`` (3,): how many are not on a known wall; see ``match``."""
-    return _linearise(tiles, table, origin[0], origin[1], resolution, points, pose, np.empty((3, 3)), np.empty(3))
+    """Σ (1 − f) of ``points`` (n, 5) seen from ``pose`` (3,): how many are not on a known wall; see ``match``.
+
+    Read off the cells that the points lie in, which is coarser than ``_linearise`` and five times as fast.
+    """
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    per_cell = 1.0 / resolution
+    start_u, start_v = (pose[0] - origin[0]) * per_cell, (pose[1] - origin[1]) * per_cell
+    turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
+    cells = tiles.reshape(-1)
+    missed = float(points.shape[0])
+    for i in range(points.shape[0]):
+        u = start_u + (cos * points[i, 0] - sin * points[i, 1]) * per_cell
+        v = start_v + (sin * points[i, 0] + cos * points[i, 1]) * per_cell
+        missed -= field_at(cells, table, math.floor(u), math.floor(v), np.int64(turn + points[i, 4]))
+    return missed
 
 
 @leaf
 def _linearise(
-    tiles: NDArray[np.uint16],
+    cells: NDArray[np.uint16],
+    names: NDArray[np.int32],
     table: NDArray[np.int32],
     x0: float,
     y0: float,
     resolution: float,
     points: NDArray[np.float64],
     pose: NDArray[np.float64],
-    hessian: NDArray[np.float64],
-    gradient: NDArray[np.float64],
-) -> float:
-    """Sum Welsch-weighted normal equations into ``hessian`` (3, 3) and ``gradient`` (3,); returns Σ (1 − f).
+) -> tuple[float, Symmetric, Vector]:
+    """Σ (1 − f) of the points seen from ``pose`` (3,), and the Welsch-weighted normal equations; see ``match``.
 
     Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous,
     where a bilinear one jumps from cell to cell and keeps Gauss-Newton from settling. Flat, unsigned indices spare the
-    tests for negative ones.
+    tests for negative ones: ``cells`` and ``names`` are the tiles and their table in one row each.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     per_cell = 1.0 / resolution
@@ -116,7 +128,7 @@ def _linearise(
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
     tiles_across = table.shape[1]
     end_u, end_v = float(tiles_across * TILE), float(table.shape[0] * TILE)
-    cells, names, side = tiles.reshape(-1), table.reshape(-1), TILE + 2
+    side = TILE + 2
     hxx = hxy = hyy = hxt = hyt = htt = gx = gy = gt = missed = 0.0
     for i in range(points.shape[0]):
         px, py = cos * points[i, 0] - sin * points[i, 1], sin * points[i, 0] + cos * points[i, 1]
@@ -144,11 +156,7 @@ def _linearise(
         gx, gy, gt = gx + pull * nx, gy + pull * ny, gt + pull * nt
     # a spline over cells widens a Gaussian by a quarter cell²
     scale = (SIGMA * SIGMA + 0.25 * resolution * resolution) * per_cell / FULL
-    hessian[0, 0], hessian[0, 1], hessian[0, 2] = hxx, hxy, hxt
-    hessian[1, 0], hessian[1, 1], hessian[1, 2] = hxy, hyy, hyt
-    hessian[2, 0], hessian[2, 1], hessian[2, 2] = hxt, hyt, htt
-    gradient[0], gradient[1], gradient[2] = scale * gx, scale * gy, scale * gt
-    return missed
+    return missed, (hxx, hxy, hxt, hyy, hyt, htt), (scale * gx, scale * gy, scale * gt)
 
 
 @inlined
@@ -162,52 +170,20 @@ def _spline(cells: NDArray[np.uint16], first: int, a: float, allowed: int) -> tu
     return value, (a - 0.5) * f0 - 2.0 * a * f1 + (a + 0.5) * f2
 
 
-@leaf
+@inlined
 def _add_prior(
     deviation: float,
     prior: NDArray[np.float64],
-    information: NDArray[np.float64],
+    information: Symmetric,
     pose: NDArray[np.float64],
-    hessian: NDArray[np.float64],
-    gradient: NDArray[np.float64],
-) -> float:
-    """Weigh the matching by 1/s² and add the odometry's prior; returns (x − x̄)ᵀ Ω (x − x̄)."""
-    weight = 1.0 / (deviation * deviation)
+    h: Symmetric,
+    gradient: Vector,
+) -> tuple[float, Symmetric, Vector]:
+    """Weigh the matching by 1/s² and add the odometry's prior; (x − x̄)ᵀ Ω (x − x̄), information and gradient."""
+    k, o = 1.0 / (deviation * deviation), information
     dx, dy, dt = pose[0] - prior[0], pose[1] - prior[1], pose[2] - prior[2]
     dt -= 2.0 * math.pi * math.floor((dt + math.pi) / (2.0 * math.pi))
-    quadratic = 0.0
-    for k in range(3):
-        away = information[k, 0] * dx + information[k, 1] * dy + information[k, 2] * dt
-        gradient[k] = gradient[k] * weight - away
-        quadratic += away * (dx if k == 0 else dy if k == 1 else dt)
-        for j in range(3):
-            hessian[k, j] = hessian[k, j] * weight + information[k, j]
-    return quadratic
-
-
-@leaf
-def determinant(m: NDArray[np.float64]) -> float:
-    """Determinant of a symmetric 3×3 matrix, at least 1e-300."""
-    a, b, c, d, e, f = m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2]
-    value: float = max(a * (d * f - e * e) - b * (b * f - c * e) + c * (b * e - c * d), 1e-300)
-    return value
-
-
-@leaf
-def invert(m: NDArray[np.float64], out: NDArray[np.float64]) -> None:
-    """Inverse of a symmetric positive definite 3×3 matrix."""
-    a, b, c, d, e, f = m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2]
-    over = 1.0 / determinant(m)
-    out[0, 0], out[1, 1], out[2, 2] = (d * f - e * e) * over, (a * f - c * c) * over, (a * d - b * b) * over
-    out[0, 1] = out[1, 0] = (c * e - b * f) * over
-    out[0, 2] = out[2, 0] = (b * e - c * d) * over
-    out[1, 2] = out[2, 1] = (b * c - a * e) * over
-
-
-@kernel
-def solve(m: NDArray[np.float64], right: NDArray[np.float64], out: NDArray[np.float64]) -> None:
-    """Solve m · out = right for a symmetric positive definite 3×3 matrix."""
-    inverse = np.empty((3, 3))
-    invert(m, inverse)
-    for k in range(3):
-        out[k] = inverse[k, 0] * right[0] + inverse[k, 1] * right[1] + inverse[k, 2] * right[2]
+    away = times(information, (dx, dy, dt))
+    quadratic = away[0] * dx + away[1] * dy + away[2] * dt
+    total = (h[0] * k + o[0], h[1] * k + o[1], h[2] * k + o[2], h[3] * k + o[3], h[4] * k + o[4], h[5] * k + o[5])
+    return quadratic, total, (gradient[0] * k - away[0], gradient[1] * k - away[1], gradient[2] * k - away[2])

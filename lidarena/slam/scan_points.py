@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import SECTORS
-from lidarena.world.kernels import kernel, leaf
+from lidarena.world.kernels import leaf
 
 SPACING = 0.05
 """Beams are averaged over this length of wall [m]; a cell's side, more points would say nothing new."""
@@ -18,11 +18,15 @@ FLATNESS = 0.08
 """Largest ratio of the fitted points' variances across and along the wall; corners exceed it and get no normal."""
 
 
-@kernel
+@leaf
 def extract_points(
     scan: NDArray[np.float32],
     directions: NDArray[np.float64],
     max_range: float,
+    first: int,
+    stride: int,
+    means: NDArray[np.float64],
+    surface: NDArray[np.int64],
     points: NDArray[np.float64],
     flat: NDArray[np.bool_],
 ) -> int:
@@ -32,16 +36,21 @@ def extract_points(
         scan: (beams,) ranges [m]; ``max_range`` and above means no return.
         directions: (2, beams) cos and sin of the beams' angles.
         max_range: [m].
+        first: First averaged point that is wanted.
+        stride: Every how manyth from there on; the normals come from all.
+        means: (beams, 2) work space, the averaged points.
+        surface: (beams,) work space, number of the unbroken surface that each lies on.
         points: (beams, 5) output in the sensor's frame: x, y [m], unit normal towards the sensor (where ``flat`` is
             False it only points back along the beam), and the normal's direction in sectors
             (``likelihood_field.SECTORS`` to the turn).
         flat: (beams,) output, whether the normal was fitted.
     """
-    surface = np.empty(scan.shape[0], np.int64)
-    count = _average_hits(scan, directions, max_range, points, surface)
-    for i in range(count):
-        flat[i] = _fit_normal(i, count, points, surface)
-        points[i, 4] = math.atan2(points[i, 3], points[i, 2]) * (SECTORS / (2.0 * math.pi))
+    total = _average_hits(scan, directions, max_range, means, surface)
+    count = 0
+    for i in range(first, total, stride):
+        flat[count] = _fit_normal(i, total, means, surface, points[count])
+        points[count, 4] = math.atan2(points[count, 3], points[count, 2]) * (SECTORS / (2.0 * math.pi))
+        count += 1
     return count
 
 
@@ -50,7 +59,7 @@ def _average_hits(
     scan: NDArray[np.float32],
     directions: NDArray[np.float64],
     max_range: float,
-    points: NDArray[np.float64],
+    means: NDArray[np.float64],
     surface: NDArray[np.int64],
 ) -> int:
     """Average runs of hits shorter than ``SPACING``; ``surface`` (beams,) numbers the unbroken surfaces."""
@@ -62,7 +71,7 @@ def _average_hits(
         jump = members > 0 and (x - last_x) ** 2 + (y - last_y) ** 2 > JUMP * JUMP
         full = members > 0 and (x - first_x) ** 2 + (y - first_y) ** 2 >= SPACING * SPACING
         if members > 0 and (jump or full or not hit):
-            points[count, 0], points[count, 1] = sum_x / members, sum_y / members
+            means[count, 0], means[count, 1] = sum_x / members, sum_y / members
             surface[count] = number
             count += 1
             members = 0
@@ -74,23 +83,29 @@ def _average_hits(
             sum_x, sum_y, last_x, last_y = sum_x + x, sum_y + y, x, y
             members += 1
     if members > 0:
-        points[count, 0], points[count, 1] = sum_x / members, sum_y / members
+        means[count, 0], means[count, 1] = sum_x / members, sum_y / members
         surface[count] = number
         count += 1
     return count
 
 
 @leaf
-def _fit_normal(i: int, count: int, points: NDArray[np.float64], surface: NDArray[np.int64]) -> bool:
-    """Fit a line to the neighbours of point ``i`` on its surface; returns False where they are too few or bent."""
-    px, py = points[i, 0], points[i, 1]
+def _fit_normal(
+    i: int, count: int, means: NDArray[np.float64], surface: NDArray[np.int64], point: NDArray[np.float64]
+) -> bool:
+    """Fit a line to the neighbours of mean ``i`` on its surface; returns False where they are too few or bent.
+
+    ``point`` (5,) takes the place and the normal.
+    """
+    px, py = means[i, 0], means[i, 1]
+    point[0], point[1] = px, py
     away = max(math.sqrt(px * px + py * py), 1e-9)
-    points[i, 2], points[i, 3] = -px / away, -py / away
+    point[2], point[3] = -px / away, -py / away
     n, sx, sy, sxx, sxy, syy = 0, 0.0, 0.0, 0.0, 0.0, 0.0
     for step in (-1, 1):
         j = i if step == -1 else i + 1
         while 0 <= j < count and surface[j] == surface[i]:
-            dx, dy = points[j, 0] - px, points[j, 1] - py
+            dx, dy = means[j, 0] - px, means[j, 1] - py
             if dx * dx + dy * dy > NORMAL_WINDOW * NORMAL_WINDOW:
                 break
             n += 1
@@ -111,5 +126,5 @@ def _fit_normal(i: int, count: int, points: NDArray[np.float64], surface: NDArra
         return False
     if nx * px + ny * py > 0.0:
         length = -length
-    points[i, 2], points[i, 3] = nx / length, ny / length
+    point[2], point[3] = nx / length, ny / length
     return True

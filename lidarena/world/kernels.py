@@ -14,7 +14,7 @@ from numba import njit
 
 Result = TypeVar("Result")
 
-_KERNEL: dict[str, Any] = {"cache": True, "nogil": True}
+_KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
 _LEAF: dict[str, Any] = {**_KERNEL, "_nrt": False}
 
 # The types keep what a function returns, not what it takes: numba casts where mypy would refuse np.int64 for int.

@@ -87,7 +87,7 @@ class Lidar:
         return ranges
 
 
-@kernel
+@leaf
 def cast_beams(
     first: int,
     last: int,
@@ -101,18 +101,19 @@ def cast_beams(
 ) -> None:
     """Fill ``ranges`` (worlds, robots, beams) of worlds first … last - 1; see ``Lidar.cast``."""
     beams = directions.shape[1]
-    inverse = np.empty(beams)
     for w in range(first, last):
         for r in range(poses.shape[1]):
             x, y, theta = poses[w, r, 0], poses[w, r, 1], poses[w, r, 2]
-            inverse[:] = 1.0 / max_range
+            inverse = ranges[w, r]  # inverse ranges until the end
+            for k in range(beams):
+                inverse[k] = 1.0 / max_range
             _see_plan(x, y, theta, plan[w], scenery, max_range, directions, inverse)
             if radius > 0.0:
                 for other in range(poses.shape[1]):
                     if other != r:
                         _see_circle(poses[w, other, 0] - x, poses[w, other, 1] - y, radius, theta, directions, inverse)
             for k in range(beams):
-                ranges[w, r, k] = min(1.0 / inverse[k], max_range)
+                ranges[w, r, k] = min(1.0 / ranges[w, r, k], max_range)
 
 
 @leaf

@@ -94,10 +94,3 @@ def read_odometry(
             readings[w, r, 1] = dy + sy * normal(streams[w])
             readings[w, r, 2] = dtheta + st * normal(streams[w])
 
-
-@leaf
-def move_poses(first: int, last: int, poses: NDArray[np.float64], readings: NDArray[np.float64]) -> None:
-    """Compose ``poses`` (worlds, robots, 3) of worlds first … last - 1 in place with ``readings`` of the same shape."""
-    for w in range(first, last):
-        for r in range(poses.shape[1]):
-            move(poses[w, r], readings[w, r, 0], readings[w, r, 1], readings[w, r, 2])

@@ -10,11 +10,12 @@ import pymunk
 from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan, Pose
+from lidarena.world.kernels import inlined, leaf
 
 _SLOP = 1e-3
 """Overlap that contacts tolerate [m]; pymunk's default of 0.1 is meant for pixels."""
 _MARGIN = 0.02
-"""Added to what a robot may travel when asking whether it can touch anything [m]."""
+"""Room beside a robot's way within which it might touch what its beams see, or just miss [m]."""
 
 
 class RobotSpec(NamedTuple):
@@ -56,89 +57,115 @@ class Physics:
 
     def place(self, world: int, plan: Floorplan, poses: Sequence[Pose]) -> None:
         """Put one world's robots at rest at the given poses in a floor plan."""
-        if self._plans[world] is not plan:
+        if self._plans[world] is not plan or len(self._bodies[world]) != len(poses):
             self._plans[world] = plan
             self._spaces[world] = _build_space(plan)
-        else:
-            for body in self._bodies[world]:
-                self._spaces[world].remove(body, *body.shapes)
-        self._bodies[world] = [self._add_robot(self._spaces[world], pose) for pose in poses]
+            self._bodies[world] = [self._add_robot(self._spaces[world]) for _ in poses]
         self.poses[world] = poses
 
-    def advance(self, commands: NDArray[np.float64], duration: float, clearance: NDArray[np.float64]) -> None:
+    def advance(self, commands: NDArray[np.float64], duration: float, near: NDArray[np.bool_]) -> None:
         """Drive every robot for ``duration`` seconds and update ``poses``.
 
         Each step moves a body along the chord of the arc that the wheels describe, so a step of any length ends where
-        the arc ends; robots that can touch nothing meanwhile take a single one.
+        the arc ends. Robots that can touch nothing meanwhile take a single one, without asking pymunk: its solver would
+        add velocity times duration to the pose and find no contact.
 
         Args:
             commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
             duration: [s].
-            clearance: ``(worlds, robots)`` distance from each robot's centre to the nearest surface [m].
+            near: ``(worlds,)`` whether some robot of a world may touch something; see ``may_touch``.
         """
-        closing = 1.0 if self.poses.shape[1] == 1 else 2.0  # another robot may come the other way
-        travel = closing * duration * np.abs(commands[:, :, 0]).max(axis=1)
-        near = (clearance.min(axis=1) < self.spec.radius + travel + _MARGIN).tolist()
-        rows: list[list[list[float]]] = commands.tolist()
-        headings: list[list[list[float]]] = self.poses.tolist()
-        for world, space in enumerate(self._spaces):
-            bodies = self._bodies[world]
-            if near[world]:
-                self._push(space, bodies, rows[world], duration)
-            else:
-                for body, (speed, rate), pose in zip(bodies, rows[world], headings[world], strict=True):
-                    _set_chord(body, pose[2], speed, rate, duration)
-                space.step(duration)
-            headings[world] = [_pose_of(body) for body in bodies]
-        self.poses[:] = headings
+        for world in np.flatnonzero(near).tolist():
+            self._push(world, commands[world].tolist(), duration)
+        glide(near, commands, duration, self.poses)
 
-    def _push(
-        self, space: pymunk.Space, bodies: list[pymunk.Body], commands: list[list[float]], duration: float
-    ) -> None:
-        """Drive among obstacles, in short steps.
+    def _push(self, world: int, commands: list[list[float]], duration: float) -> None:
+        """Drive one world's robots among obstacles, in short steps.
 
         A step of the solver moves the bodies first, then takes up velocities and clips them at contacts. The wheels'
         velocity therefore goes in between, through pymunk's callback, and one step more than there are moves is needed.
         """
         steps = math.ceil(duration / self.spec.substep - 1e-9)
-        for body, (speed, rate) in zip(bodies, commands, strict=True):
+        space, bodies = self._spaces[world], self._bodies[world]
+        for body, (speed, rate), (x, y, theta) in zip(bodies, commands, self.poses[world].tolist(), strict=True):
+            body.position, body.angle = (x, y), theta
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
             body.velocity_func = partial(_turn_wheels, speed, rate)
         for _ in range(steps + 1):
             space.step(duration / steps)
-        for body in bodies:
-            body.velocity_func = pymunk.Body.update_velocity
+        self.poses[world] = [(*body.position, math.remainder(body.angle, 2.0 * math.pi)) for body in bodies]
 
-    def _add_robot(self, space: pymunk.Space, pose: Pose) -> pymunk.Body:
+    def _add_robot(self, space: pymunk.Space) -> pymunk.Body:
         body = pymunk.Body(self.spec.mass, pymunk.moment_for_circle(self.spec.mass, 0.0, self.spec.radius))
-        body.position = (float(pose[0]), float(pose[1]))
-        body.angle = float(pose[2])
         shape = pymunk.Circle(body, self.spec.radius)
         shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
         space.add(body, shape)
         return body
 
 
-def _pose_of(body: pymunk.Body) -> list[float]:
-    x, y = body.position
-    angle = body.angle
-    if abs(angle) > math.pi:  # a restored body starts from the wrapped heading: keep the same bits
-        body.angle = angle = math.remainder(angle, 2.0 * math.pi)
-    return [x, y, angle]
+@leaf
+def may_touch(
+    commands: NDArray[np.float64],
+    duration: float,
+    radius: float,
+    ranges: NDArray[np.float64],
+    directions: NDArray[np.float64],
+    near: NDArray[np.bool_],
+) -> None:
+    """Fill ``near`` (worlds,): whether a world's only robot may touch what its beams see, while it drives.
+
+    Args:
+        commands: (worlds, robots, 2) forward speed [m/s] and turn rate [rad/s].
+        duration: [s].
+        radius: Of the robot [m].
+        ranges: (worlds, 1, beams) exact ranges [m].
+        directions: (2, beams) cos and sin of the beams' angles.
+        near: Output.
+    """
+    for world in range(near.shape[0]):
+        half = 0.5 * commands[world, 0, 1] * duration
+        travel = commands[world, 0, 0] * duration
+        reach, keep = radius + abs(travel) + _MARGIN, radius + _MARGIN
+        ahead, aside = travel * math.cos(half), travel * math.sin(half)
+        near[world] = False
+        for k in range(ranges.shape[2]):
+            if ranges[world, 0, k] < reach:  # distance of the point from the line that the centre moves along
+                x, y = ranges[world, 0, k] * directions[0, k], ranges[world, 0, k] * directions[1, k]
+                share = (x * ahead + y * aside) / (travel * travel) if travel != 0.0 else 0.0
+                share = min(max(share, 0.0), 1.0)
+                dx, dy = x - share * ahead, y - share * aside
+                if dx * dx + dy * dy < keep * keep:
+                    near[world] = True
+                    break
 
 
-def _set_chord(body: pymunk.Body, heading: float, speed: float, rate: float, dt: float) -> None:
-    """Give a body the velocity that leads along the chord of its next arc from ``heading``."""
+@leaf
+def glide(near: NDArray[np.bool_], commands: NDArray[np.float64], duration: float, poses: NDArray[np.float64]) -> None:
+    """Move the robots of all worlds that are not ``near`` (worlds,) along the chords of their arcs; see ``advance``."""
+    for world in range(poses.shape[0]):
+        if near[world]:
+            continue
+        for robot in range(poses.shape[1]):
+            vx, vy = chord(poses[world, robot, 2], commands[world, robot, 0], commands[world, robot, 1], duration)
+            theta = poses[world, robot, 2] + commands[world, robot, 1] * duration
+            theta -= 2.0 * math.pi * math.floor(theta / (2.0 * math.pi) + 0.5)
+            poses[world, robot, 0] += vx * duration
+            poses[world, robot, 1] += vy * duration
+            poses[world, robot, 2] = theta
+
+
+@inlined
+def chord(heading: float, speed: float, rate: float, dt: float) -> tuple[float, float]:
+    """Velocity along the chord of the arc that a robot describes from ``heading`` in ``dt``."""
     half = 0.5 * rate * dt
-    chord = speed * (math.sin(half) / half if half != 0.0 else 1.0)
-    heading += half
-    body.velocity = (chord * math.cos(heading), chord * math.sin(heading))
-    body.angular_velocity = rate
+    along = speed * (math.sin(half) / half if half != 0.0 else 1.0)
+    return along * math.cos(heading + half), along * math.sin(heading + half)
 
 
 def _turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
     """Velocity callback of pymunk: what the wheels do, before contacts have their say."""
-    _set_chord(body, body.angle, speed, rate, dt)
+    body.velocity = chord(body.angle, speed, rate, dt)
+    body.angular_velocity = rate
 
 
 def _build_space(plan: Floorplan) -> pymunk.Space:

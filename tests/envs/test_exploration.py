@@ -111,7 +111,7 @@ def test_the_observation_holds_beams_previous_action_and_completeness() -> None:
     observation, info = env.reset(seed=3)
     assert observation[5] == 0.0
     observation, _, _, _, info = env.step(2)
-    scan = env.unwrapped._episodes.core.scans[0, 0]
+    scan = env.unwrapped._episodes.core.sensors.scans[0, 0]
     assert observation[:5] == pytest.approx(scan[[0, 45, 90, 315, 270]] / 3.5)
     assert observation[5] == 1.0
     assert observation[6] == pytest.approx(info["completeness"], abs=1e-6)

@@ -1,0 +1,92 @@
+"""What robots measure in one decision period, in one kernel: odometry, scan, bumper, and the paths added up."""
+
+import math
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.world.lidar import LidarSpec, Scenery, add_range_noise, cast_beams
+from lidarena.world.odometry import OdometryNoise, move, read_odometry
+from lidarena.world.kernels import leaf
+
+
+class Sensors(NamedTuple):
+    """Measurements of ``W`` worlds with one robot each.
+
+    Attributes:
+        ranges: (W, 1, beams) exact ranges [m].
+        scans: (W, 1, beams) measured ranges, float32 [m].
+        readings: (W, 1, 3) odometry of the last step.
+        dead_reckoning: (W, 1, 3) the readings added up.
+        path_length: (W,) length of the odometry's path [m].
+        true_path_length: (W,) length of the true path [m].
+        collision: (W,) whether some exact range is below the bumper's distance.
+    """
+
+    ranges: NDArray[np.float64]
+    scans: NDArray[np.float32]
+    readings: NDArray[np.float64]
+    dead_reckoning: NDArray[np.float64]
+    path_length: NDArray[np.float64]
+    true_path_length: NDArray[np.float64]
+    collision: NDArray[np.bool_]
+
+
+def empty_sensors(worlds: int, beams: int) -> Sensors:
+    """Allocate them."""
+    return Sensors(
+        np.zeros((worlds, 1, beams)),
+        np.zeros((worlds, 1, beams), np.float32),
+        np.zeros((worlds, 1, 3)),
+        np.zeros((worlds, 1, 3)),
+        np.zeros(worlds),
+        np.zeros(worlds),
+        np.zeros(worlds, np.bool_),
+    )
+
+
+@leaf
+def read_sensors(
+    first: int,
+    last: int,
+    before: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    plan: NDArray[np.int64],
+    noise: OdometryNoise,
+    lidar: LidarSpec,
+    bumper: float,
+    scenery: Scenery,
+    directions: NDArray[np.float64],
+    streams: NDArray[np.uint64],
+    sensors: Sensors,
+) -> None:
+    """Measure in worlds first … last - 1 after a motion.
+
+    Args:
+        first: First world.
+        last: World after the last.
+        before: (W, 1, 3) true poses before the motion.
+        poses: (W, 1, 3) true poses after it.
+        plan: (W,) index of each world's floor plan.
+        noise: The odometry's.
+        lidar: The lidar.
+        bumper: Ranges below this are a collision [m].
+        scenery: The floor plans as ``Lidar`` laid them out.
+        directions: (2, beams) cos and sin of the beams' angles.
+        streams: (W, 4) random streams.
+        sensors: Output.
+    """
+    read_odometry(first, last, before, poses, noise, streams, sensors.readings)
+    cast_beams(first, last, poses, plan, 0.0, scenery, directions, lidar.max_range, sensors.ranges)
+    add_range_noise(first, last, lidar.noise, lidar.max_range, streams, sensors.ranges, sensors.scans)
+    for w in range(first, last):
+        dx, dy, dtheta = sensors.readings[w, 0, 0], sensors.readings[w, 0, 1], sensors.readings[w, 0, 2]
+        move(sensors.dead_reckoning[w, 0], dx, dy, dtheta)
+        sensors.path_length[w] += math.sqrt(dx * dx + dy * dy)
+        dx, dy = poses[w, 0, 0] - before[w, 0, 0], poses[w, 0, 1] - before[w, 0, 1]
+        sensors.true_path_length[w] += math.sqrt(dx * dx + dy * dy)
+        least = lidar.max_range
+        for k in range(sensors.ranges.shape[2]):
+            least = min(least, sensors.ranges[w, 0, k])
+        sensors.collision[w] = least < bumper
