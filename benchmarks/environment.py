@@ -9,6 +9,7 @@ import argparse
 import math
 import time
 from collections.abc import Callable
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
@@ -105,7 +106,8 @@ def main() -> None:
     naive = NaiveWorlds(plan, 8)
     reference = rate(naive.step, 8, 30)
     print(f"{'naive pymunk loop, 360 rays, no SLAM':44} {reference:9,.0f} steps/s    1.0×")
-    for label, keywords in (("30-particle SLAM live", {}), ("slam='truth'", {"slam": "truth"})):
+    kinds: dict[str, dict[str, Any]] = {"30-particle SLAM live": {}, "slam='truth'": {"slam": "truth"}}
+    for label, keywords in kinds.items():
         batch = gym.make_vec(options.env, WORLDS, "vector_entry_point", **keywords)
         batch.reset(seed=0)
         value = rate(lambda actions, batch=batch: batch.step(actions)[0], WORLDS, options.steps)  # type: ignore[misc]

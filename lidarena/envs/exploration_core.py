@@ -1,25 +1,24 @@
 """The exploration worlds themselves, batched: physics, sensors, SLAM, bookkeeping; no spaces, rewards or episodes."""
 
-from functools import partial
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.coverage import measure_coverage
+from lidarena.envs.exploration_kernels import sense_and_filter, sense_and_map
 from lidarena.envs.exploration_options import ExplorationOptions
-from lidarena.envs.worker_threads import for_ranges
+from lidarena.envs.worker_threads import on_threads
 from lidarena.slam.known_pose_mapping import KnownPoseMapper
 from lidarena.slam.particle_filter import ParticleFilters
 from lidarena.slam.particle_filter_state import FilterParameters
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
-from lidarena.world.floorplan import START_CLEARANCE
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
 from lidarena.world.odometry import OdometryNoise
 from lidarena.world.physics import Physics, RobotSpec, may_touch
 from lidarena.world.random_streams import seed_stream
-from lidarena.world.sensors import empty_sensors, read_sensors
+from lidarena.world.sensors import empty_sensors
 
 RESOLUTION = 0.05
 """Side of a map cell, gmapping's δ [m]."""
@@ -98,11 +97,10 @@ class ExplorationCore:
         sensors = self.sensors
         sensors.dead_reckoning[world, 0] = pose
         sensors.path_length[world] = sensors.true_path_length[world] = 0.0
-        self._sense(self.physics.poses, world, world + 1)
         slam = self.filters or self.mapper
         assert slam is not None
-        origin = self._coverage[plan].origin
-        slam.start(world, plan, origin, self.physics.poses[world, 0].copy(), sensors.scans[:, 0])
+        slam.start(world, plan, self._coverage[plan].origin, self.physics.poses[world, 0])
+        self._perceive(self.physics.poses, world, world + 1)
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
         if self.options.start != "random":
@@ -121,22 +119,21 @@ class ExplorationCore:
         driven, period = commands[:, None, :], self.options.decision_period
         may_touch(driven, period, self.robot.radius, self.sensors.ranges, self.lidar.directions, self._near)
         self.physics.advance(driven, period, self._near)
-        for_ranges(self.worlds, partial(self._perceive, before))
+        self._perceive(before, 0, self.worlds)
 
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Read the sensors of worlds first … last - 1 and run their SLAM."""
-        self._sense(before, first, last)
-        period, readings, scans = self.options.decision_period, self.sensors.readings[:, 0], self.sensors.scans[:, 0]
-        if self.filters is not None:
-            self.filters.step(first, last, period, readings, scans, self.streams)
-        elif self.mapper is not None:
-            self.mapper.step(first, last, period, readings, scans, self.physics.poses[:, 0])
-
-    def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
-        read_sensors(
-            first, last, before, self.physics.poses, self.plan, self._noise, self.beam, START_CLEARANCE,
-            self.lidar.scenery, self.lidar.directions, self.streams, self.sensors,
+        measured = (
+            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam,
+            self.lidar.scenery, self.lidar.directions, self.sensors, self.options.decision_period, RESOLUTION,
         )  # fmt: skip
+        counter = np.array([first])
+        if self.filters is not None:
+            slam = (self.filters.parameters, self.filters.state, self.maps, self.filters.scratch)
+            on_threads(last - first, lambda thread: sense_and_filter(counter, last, thread, *measured, *slam))
+        elif self.mapper is not None:
+            known = (self.mapper.parameters, self.mapper.since, self.maps, self.mapper.outlines)
+            on_threads(last - first, lambda thread: sense_and_map(counter, last, thread, *measured, *known))
 
     @property
     def completeness(self) -> NDArray[np.float64]:

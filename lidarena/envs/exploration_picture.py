@@ -108,8 +108,9 @@ def _draw_belief(canvas: Canvas, core: ExplorationCore, world: int) -> None:
 
 def _headline(core: ExplorationCore, world: int, name: str) -> str:
     d_optimality, _, n_eff = core.criteria[world]
+    path = core.sensors.path_length[world]
     return (
-        f"{name}   completeness {100 * core.completeness[world]:.1f} %   path {core.sensors.path_length[world]:.1f} m   "
+        f"{name}   completeness {100 * core.completeness[world]:.1f} %   path {path:.1f} m   "
         f"D-opt {d_optimality:.1e}   N_eff {n_eff:.0f}{'   COLLISION' if core.sensors.collision[world] else ''}"
     )
 

@@ -1,27 +1,23 @@
-"""Running compiled kernels on disjoint ranges of worlds at once.
+"""Running compiled kernels on all cores at once.
 
 The kernels release the interpreter lock, so plain threads serve; unlike an OpenMP region they may be started in a
 process that was forked, they compile in half the time, and a batch of one calls its kernel directly. (Asking numba for
 its number of threads would start OpenMP and, with it, undo the number of threads that PyTorch was given.)
 
-The calling thread works along: with as many helpers as cores and a caller that only waits, the threads drive each other
-from core to core, and stepping took 1.6 times as long.
+Each thread calls the kernel once, and the kernel itself takes world after world from a counter that all share
+(``kernels.take_next``): handing out ranges in Python costs more in waiting for the interpreter lock than it gains.
 """
 
 import os
-from collections import deque
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import lru_cache
-from itertools import pairwise
 from typing import Any, cast
 
 from numba import config
 
 from lidarena.world.refusals import ConfigError
 
-_CHUNKS_PER_THREAD = 8
-"""Worlds differ in cost; smaller ranges keep the threads busy to the end."""
 _threads = int(cast(Any, config).NUMBA_NUM_THREADS)  # numba sets its attributes at run time
 
 
@@ -37,33 +33,19 @@ def set_num_threads(count: int) -> None:
     _threads = count
 
 
-def for_ranges(count: int, work: Callable[[int, int], None]) -> None:
-    """Call ``work(first, last)`` for ranges that together cover 0 … count - 1, on ``set_num_threads``'s threads."""
-    threads = min(_threads, count)
+def on_threads(most: int, work: Callable[[int], None]) -> None:
+    """Call ``work(0)``, ``work(1)`` … at once, on ``set_num_threads``'s threads but at most ``most``."""
+    threads = min(_threads, most)
     if threads <= 1:
-        work(0, count)
+        work(0)
         return
-    chunks = min(threads * _CHUNKS_PER_THREAD, count)
-    borders = [count * k // chunks for k in range(chunks + 1)]
-    waiting = deque(pairwise(borders))
-    executor = _executor(os.getpid(), threads - 1)
-    helpers = [executor.submit(_work_off, waiting, work) for _ in range(threads - 1)]
+    executor = _executor(os.getpid(), threads - 1)  # the calling thread works along
+    helpers = [executor.submit(work, k) for k in range(1, threads)]
     try:
-        _work_off(waiting, work)
+        work(0)
     finally:
-        waiting.clear()  # after an error nobody begins anything more
         for helper in helpers:
             helper.result()
-
-
-def _work_off(waiting: deque[tuple[int, int]], work: Callable[[int, int], None]) -> None:
-    """Take ranges and work on them until there are none left."""
-    while True:
-        try:
-            first, last = waiting.popleft()
-        except IndexError:
-            return
-        work(first, last)
 
 
 @lru_cache(maxsize=4)

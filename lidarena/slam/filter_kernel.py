@@ -10,8 +10,8 @@ from lidarena.slam.likelihood_field import clear_fields, copy_field, register_po
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.scan_matching import match, misfit
-from lidarena.slam.scan_points import extract_points
 from lidarena.slam.scan_outline import Outlines
+from lidarena.slam.scan_points import extract_points
 from lidarena.slam.symmetric import Symmetric, inverse, load, rotated
 from lidarena.slam.uncertainty import d_optimality, pose_moments, weight_entropy
 from lidarena.world.kernels import leaf
@@ -27,52 +27,49 @@ _LEAST_VARIANCE = 1e-8
 
 
 @leaf
-def step_filters(
-    first: int,
-    last: int,
+def step_filter(
+    w: int,
     duration: float,
     resolution: float,
     max_range: float,
     directions: NDArray[np.float64],
     parameters: FilterParameters,
-    readings: NDArray[np.float64],
-    scans: NDArray[np.float32],
-    streams: NDArray[np.uint64],
+    reading: NDArray[np.float64],
+    scan: NDArray[np.float32],
+    stream: NDArray[np.uint64],
     state: FilterState,
     maps: OccupancyMaps,
     scratch: Scratch,
+    s: int,
 ) -> None:
-    """Advance the filters of worlds first … last - 1 by one odometry reading and, where due, one scan.
+    """Advance world w's filter by one odometry reading and, where due, one scan.
 
     A filter that has processed no scan yet starts with this one. (Starting is not a kernel of its own: both would be
     compiled with the same callees, and that is what takes the time.)
 
     Args:
-        first: First world.
-        last: World after the last.
+        w: World.
         duration: Time since the last call [s].
         resolution: Of the grids [m].
         max_range: Ranges from here on are no returns [m].
         directions: (2, beams) cos and sin of the beams' angles.
         parameters: The filters' settings.
-        readings: (W, 3) odometry in the robots' frames before the motion.
-        scans: (W, beams) ranges after it [m].
-        streams: (W, 4) random streams.
+        reading: (3,) odometry in the robot's frame before the motion.
+        scan: (beams,) ranges after it [m].
+        stream: (4,) random stream.
         state: The filters.
         maps: The published maps.
-        scratch: Of which row ``first`` is used.
+        scratch: Room to work in.
+        s: Which row of it; no other thread may use it meanwhile.
     """
-    s = first
-    for w in range(first, last):
-        if state.updates[w] == 0:
-            _begin(w, resolution, max_range, directions, parameters, scans[w], s, state, maps, scratch)
-            _summarise(w, state)
-            continue
-        predict(w, duration, readings[w], parameters, streams[w], state)
+    if state.updates[w] == 0:
+        _begin(w, resolution, max_range, directions, parameters, scan, s, state, maps, scratch)
+    else:
+        predict(w, duration, reading, parameters, stream, state)
         due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
         if due or state.since[w, 2] > parameters.temporal_update:
-            update(w, resolution, max_range, directions, parameters, scans[w], streams[w], s, state, maps, scratch)
-        _summarise(w, state)
+            update(w, resolution, max_range, directions, parameters, scan, stream, s, state, maps, scratch)
+    _summarise(w, state)
 
 
 @leaf
@@ -202,7 +199,7 @@ def _choose(s: int, count: int, scratch: Scratch) -> int:
         if scratch.flat[s, i]:
             usable[total] = i
             total += 1
-    most = min(scratch.chosen.shape[1], total)
+    most: int = min(scratch.chosen.shape[1], total)
     for i in range(most):
         copy_vector(scratch.chosen[s, i], scratch.points[s, usable[i * total // most]])
     return most

@@ -25,6 +25,7 @@ class KnownPoseMapper:
     Attributes:
         maps: The occupancy grids.
         since: (worlds, 3) distance [m], turn [rad] and time [s] since the last traced scan.
+        outlines: What the kernel works on, a row for each thread.
     """
 
     def __init__(
@@ -38,9 +39,9 @@ class KnownPoseMapper:
     ) -> None:
         self.maps: OccupancyMaps = empty_maps(worlds, wanted)
         self.since = np.zeros((worlds, 3))
-        self._outlines = empty_outlines(worlds, wanted.shape[1], directions.shape[1], max_range, resolution)
-        self._parameters = parameters or FilterParameters()
-        self._directions, self._max_range, self._resolution = directions, max_range, resolution
+        self.outlines = empty_outlines(worlds, wanted.shape[1], directions.shape[1], max_range, resolution)
+        self.parameters = parameters or FilterParameters()
+        self.directions, self.max_range, self.resolution = directions, max_range, resolution
 
     def start(
         self,
@@ -48,54 +49,49 @@ class KnownPoseMapper:
         plan: int,
         origin: NDArray[np.float64],
         pose: NDArray[np.float64],
-        scans: NDArray[np.float32],
     ) -> None:
-        """Start one map anew with its row of ``scans`` (W, beams), taken at ``pose`` (3,)."""
+        """Start one map anew; the next scan is traced, whatever the update rule says and from whatever ``pose``."""
         clear_map(self.maps, world, plan, origin)
-        self.since[world] = 0.0
-        trace_scan(
-            self.maps, world, self._resolution, pose, scans[world], self._directions, self._max_range, 1,
-            self._outlines, world,
-        )  # fmt: skip
-
-    def step(
-        self,
-        first: int,
-        last: int,
-        duration: float,
-        readings: NDArray[np.float64],
-        scans: NDArray[np.float32],
-        poses: NDArray[np.float64],
-    ) -> None:
-        """Advance maps first … last - 1 by a motion (W, 3) and, where due, the scan (W, beams) at ``poses`` (W, 3)."""
-        _map_scans(
-            first, last, duration, self._resolution, self._max_range, self._directions, self._parameters,
-            readings, scans, poses, self.since, self.maps, self._outlines,
-        )  # fmt: skip
+        self.since[world] = math.inf
 
 
 @leaf
-def _map_scans(
-    first: int,
-    last: int,
+def map_scan(
+    w: int,
     duration: float,
     resolution: float,
     max_range: float,
     directions: NDArray[np.float64],
     parameters: FilterParameters,
-    readings: NDArray[np.float64],
-    scans: NDArray[np.float32],
-    poses: NDArray[np.float64],
+    reading: NDArray[np.float64],
+    scan: NDArray[np.float32],
+    pose: NDArray[np.float64],
     since: NDArray[np.float64],
     maps: OccupancyMaps,
     outlines: Outlines,
+    s: int,
 ) -> None:
-    """Kernel of ``KnownPoseMapper.step``."""
-    for w in range(first, last):
-        since[w, 0] += math.hypot(readings[w, 0], readings[w, 1])
-        since[w, 1] += abs(readings[w, 2])
-        since[w, 2] += duration
-        due = since[w, 0] >= parameters.linear_update or since[w, 1] >= parameters.angular_update
-        if due or since[w, 2] > parameters.temporal_update:
-            trace_scan(maps, w, resolution, poses[w], scans[w], directions, max_range, 1, outlines, first)
-            since[w] = 0.0
+    """Advance world w's map by a motion (3,) and, where due, the scan (beams,) taken at ``pose`` (3,) after it.
+
+    Args:
+        w: World.
+        duration: Of the motion [s].
+        resolution: Of the grids [m].
+        max_range: Ranges from here on are no returns [m].
+        directions: (2, beams) cos and sin of the beams' angles.
+        parameters: Settings, of which only the update rule matters.
+        reading: (3,) the motion.
+        scan: (beams,) ranges [m].
+        pose: (3,) true pose.
+        since: (worlds, 3), see ``KnownPoseMapper``.
+        maps: The grids.
+        outlines: Room to work in.
+        s: Which row of it; no other thread may use it meanwhile.
+    """
+    since[w, 0] += math.hypot(reading[0], reading[1])
+    since[w, 1] += abs(reading[2])
+    since[w, 2] += duration
+    due = since[w, 0] >= parameters.linear_update or since[w, 1] >= parameters.angular_update
+    if due or since[w, 2] > parameters.temporal_update:
+        trace_scan(maps, w, resolution, pose, scan, directions, max_range, 1, outlines, s)
+        since[w] = 0.0

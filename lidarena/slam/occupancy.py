@@ -1,8 +1,9 @@
-"""The published map: an occupancy grid that counts, for every cell, in how many scans beams ended in it and passed it.
+"""The published map: an occupancy grid that counts, for every cell, how many scans ended in it and passed it.
 
-A scan counts a cell once, however many of its beams went that way (as OctoMap does): the beams of one scan err together,
-and near the robot hundreds of them share a cell. A scan that was traced can be taken back exactly, since the counts are integers: when another particle turns out to be
-the best, only the scans in which its past differs are traced anew (gmapping traces its whole past instead).
+A scan counts a cell once, however many of its beams went that way (as OctoMap does): the beams of one scan err
+together, and near the robot hundreds of them share a cell. A scan that was traced can be taken back exactly, since the
+counts are integers: when another particle turns out to be the best, only the scans in which its past differs are traced
+anew (gmapping traces its whole past instead).
 """
 
 import math
@@ -96,9 +97,7 @@ def trace_scan(
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     u = (pose[0] - maps.origin[world, 0]) / resolution
     v = (pose[1] - maps.origin[world, 1]) / resolution
-    outline_scan(
-        outlines, s, maps.visits.shape[2], u, v, cos, sin, resolution, scan, directions, max_range
-    )
+    outline_scan(outlines, s, maps.visits.shape[2], u, v, cos, sin, resolution, scan, directions, max_range)
     visits, hits, occupancy = maps.visits[world], maps.hits[world], maps.occupancy[world]
     wanted = maps.wanted[maps.plan[world]]
     heads, crossings, reaches = outlines.heads[s], outlines.crossings[s], outlines.reaches[s]
@@ -162,7 +161,7 @@ def _pass(
     now = np.int32(before + sign)
     visits[row, column] = now
     occupancy[row, column] = np.int8(-1 if now == 0 else 100 if 4 * hits[row, column] > now else 0)
-    return wanted[row, column] * ((now > 0) - (before > 0))
+    return int(wanted[row, column] * ((now > 0) - (before > 0)))
 
 
 @leaf

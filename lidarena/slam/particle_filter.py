@@ -9,7 +9,7 @@ weighted by how well scan and odometry agree with its map, and the set is resamp
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.slam.filter_kernel import step_filters
+from lidarena.slam.filter_kernel import step_filter
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState, Scratch, empty_scratch, empty_state
 
@@ -28,6 +28,7 @@ class ParticleFilters:
     Attributes:
         maps: The published occupancy grids, traced from each filter's best particle.
         state: The filters' arrays.
+        scratch: What the kernel works on, a row for each thread.
     """
 
     def __init__(
@@ -41,13 +42,11 @@ class ParticleFilters:
     ) -> None:
         self.parameters = parameters or FilterParameters()
         self.resolution = resolution
-        self._directions, self._max_range = directions, max_range
+        self.directions, self.max_range = directions, max_range
         rows, columns = wanted.shape[1:]
         self.maps: OccupancyMaps = empty_maps(worlds, wanted)
         self.state: FilterState = empty_state(worlds, rows, columns, directions.shape[1], self.parameters)
-        self._scratch: Scratch = empty_scratch(
-            worlds, rows, directions.shape[1], max_range, resolution, self.parameters
-        )
+        self.scratch: Scratch = empty_scratch(worlds, rows, directions.shape[1], max_range, resolution, self.parameters)
 
     def start(
         self,
@@ -55,36 +54,32 @@ class ParticleFilters:
         plan: int,
         origin: NDArray[np.float64],
         pose: NDArray[np.float64],
-        scans: NDArray[np.float32],
     ) -> None:
-        """Start one filter anew.
+        """Start one filter anew; the next scan is its first.
 
         Args:
             world: Which filter.
             plan: Which of ``wanted`` it covers.
             origin: (2,) lower-left corner of its grids [m].
-            pose: (3,) where the robot stands; the frame of everything that follows.
-            scans: (W, beams) scans of all worlds, of which this one's is its first [m].
+            pose: (3,) where the robot stands then; the frame of everything that follows.
         """
         clear_map(self.maps, world, plan, origin)
         self.state.particles[world] = pose
         self.state.updates[world] = 0
-        self.step(world, world + 1, 0.0, self.state.motion, scans, np.zeros((0, 4), np.uint64))
 
     def step(
         self,
-        first: int,
-        last: int,
+        world: int,
         duration: float,
-        readings: NDArray[np.float64],
-        scans: NDArray[np.float32],
-        streams: NDArray[np.uint64],
+        reading: NDArray[np.float64],
+        scan: NDArray[np.float32],
+        stream: NDArray[np.uint64],
     ) -> None:
-        """Advance filters first … last - 1 by one odometry reading (W, 3) and, where due, one scan (W, beams).
+        """Advance one filter by an odometry reading (3,) and, where due, a scan (beams,); draws from ``stream`` (4,).
 
-        Disjoint ranges may be advanced by different threads at once.
+        Several filters at once, on all cores: ``filter_kernel.step_filter`` in a kernel of one's own.
         """
-        step_filters(
-            first, last, duration, self.resolution, self._max_range, self._directions, self.parameters,
-            readings, scans, streams, self.state, self.maps, self._scratch,
+        step_filter(
+            world, duration, self.resolution, self.max_range, self.directions, self.parameters,
+            reading, scan, stream, self.state, self.maps, self.scratch, 0,
         )  # fmt: skip

@@ -12,7 +12,17 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.slam.likelihood_field import FULL, ROUND_UP, SECTORS, SIGMA, TILE, TILE_BITS, facing, facing_mask, field_at
+from lidarena.slam.likelihood_field import (
+    FULL,
+    ROUND_UP,
+    SECTORS,
+    SIGMA,
+    TILE,
+    TILE_BITS,
+    facing,
+    facing_mask,
+    field_at,
+)
 from lidarena.slam.symmetric import Symmetric, Vector, determinant, inverse, times
 from lidarena.world.kernels import inlined, leaf
 

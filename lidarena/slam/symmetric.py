@@ -31,14 +31,19 @@ def inverse(m: Symmetric) -> Symmetric:
     """Inverse of a positive definite matrix."""
     a, b, c, d, e, f = m
     k = 1.0 / determinant(m)
-    return (d * f - e * e) * k, (c * e - b * f) * k, (b * e - c * d) * k, (a * f - c * c) * k, (b * c - a * e) * k, (
-        a * d - b * b
-    ) * k
+    return (
+        (d * f - e * e) * k,
+        (c * e - b * f) * k,
+        (b * e - c * d) * k,
+        (a * f - c * c) * k,
+        (b * c - a * e) * k,
+        (a * d - b * b) * k,
+    )
 
 
 @inlined
 def times(m: Symmetric, v: Vector) -> Vector:
-    """m · v."""
+    """M · v."""
     a, b, c, d, e, f = m
     return a * v[0] + b * v[1] + c * v[2], b * v[0] + d * v[1] + e * v[2], c * v[0] + e * v[1] + f * v[2]
 

@@ -8,9 +8,13 @@ from the cache would then differ in the last bit.
 """
 
 from collections.abc import Callable
-from typing import Any, TypeVar
+from typing import Any, TypeVar, cast
 
-from numba import njit
+import numpy as np
+from numba import njit, types
+from numba.core import cgutils
+from numba.extending import intrinsic
+from numpy.typing import NDArray
 
 Result = TypeVar("Result")
 
@@ -36,3 +40,16 @@ def inlined(function: Callable[..., Result]) -> Callable[..., Result]:
     """Compile a small ``leaf`` into each of its callers."""
     compiled: Callable[..., Result] = njit(**_LEAF, forceinline=True)(function)
     return compiled
+
+
+def _take_next(context: Any, counter: Any) -> Any:
+    def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
+        array = context.make_array(signature.args[0])(context, builder, arguments[0])
+        return builder.atomic_rmw("add", array.data, cgutils.intp_t(1), "monotonic")
+
+    return types.intp(counter), generate
+
+
+take_next = cast(Callable[[NDArray[np.int64]], int], intrinsic(_take_next))
+"""``counter[0]`` of a counter (1,), raised by one in the same breath: threads that share it never get the same number.
+Within kernels only."""

@@ -93,4 +93,3 @@ def read_odometry(
             readings[w, r, 0] = dx + sx * normal(streams[w])
             readings[w, r, 1] = dy + sy * normal(streams[w])
             readings[w, r, 2] = dtheta + st * normal(streams[w])
-

@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.world.kernels import leaf
 from lidarena.world.lidar import LidarSpec, Scenery, add_range_noise, cast_beams
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
-from lidarena.world.kernels import leaf
 
 
 class Sensors(NamedTuple):
@@ -48,8 +48,7 @@ def empty_sensors(worlds: int, beams: int) -> Sensors:
 
 @leaf
 def read_sensors(
-    first: int,
-    last: int,
+    w: int,
     before: NDArray[np.float64],
     poses: NDArray[np.float64],
     plan: NDArray[np.int64],
@@ -61,11 +60,10 @@ def read_sensors(
     streams: NDArray[np.uint64],
     sensors: Sensors,
 ) -> None:
-    """Measure in worlds first … last - 1 after a motion.
+    """Measure in world w after a motion.
 
     Args:
-        first: First world.
-        last: World after the last.
+        w: World.
         before: (W, 1, 3) true poses before the motion.
         poses: (W, 1, 3) true poses after it.
         plan: (W,) index of each world's floor plan.
@@ -77,16 +75,15 @@ def read_sensors(
         streams: (W, 4) random streams.
         sensors: Output.
     """
-    read_odometry(first, last, before, poses, noise, streams, sensors.readings)
-    cast_beams(first, last, poses, plan, 0.0, scenery, directions, lidar.max_range, sensors.ranges)
-    add_range_noise(first, last, lidar.noise, lidar.max_range, streams, sensors.ranges, sensors.scans)
-    for w in range(first, last):
-        dx, dy, dtheta = sensors.readings[w, 0, 0], sensors.readings[w, 0, 1], sensors.readings[w, 0, 2]
-        move(sensors.dead_reckoning[w, 0], dx, dy, dtheta)
-        sensors.path_length[w] += math.sqrt(dx * dx + dy * dy)
-        dx, dy = poses[w, 0, 0] - before[w, 0, 0], poses[w, 0, 1] - before[w, 0, 1]
-        sensors.true_path_length[w] += math.sqrt(dx * dx + dy * dy)
-        least = lidar.max_range
-        for k in range(sensors.ranges.shape[2]):
-            least = min(least, sensors.ranges[w, 0, k])
-        sensors.collision[w] = least < bumper
+    read_odometry(w, w + 1, before, poses, noise, streams, sensors.readings)
+    cast_beams(w, w + 1, poses, plan, 0.0, scenery, directions, lidar.max_range, sensors.ranges)
+    add_range_noise(w, w + 1, lidar.noise, lidar.max_range, streams, sensors.ranges, sensors.scans)
+    dx, dy, dtheta = sensors.readings[w, 0, 0], sensors.readings[w, 0, 1], sensors.readings[w, 0, 2]
+    move(sensors.dead_reckoning[w, 0], dx, dy, dtheta)
+    sensors.path_length[w] += math.sqrt(dx * dx + dy * dy)
+    dx, dy = poses[w, 0, 0] - before[w, 0, 0], poses[w, 0, 1] - before[w, 0, 1]
+    sensors.true_path_length[w] += math.sqrt(dx * dx + dy * dy)
+    least = lidar.max_range
+    for k in range(sensors.ranges.shape[2]):
+        least = min(least, sensors.ranges[w, 0, k])
+    sensors.collision[w] = least < bumper

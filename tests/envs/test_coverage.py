@@ -35,15 +35,17 @@ def test_a_slit_too_narrow_for_the_robot_is_not_wanted() -> None:
 def test_perfect_mapping_can_know_all_of_it(name: str) -> None:
     """Scans without noise from every reachable place find every wanted cell: 100% is attainable."""
     from lidarena.slam.occupancy import empty_maps, trace_scan
+    from lidarena.slam.scan_outline import empty_outlines
     from lidarena.world.lidar import Lidar
 
     plan = load_floorplan(name)
     coverage = measure_coverage(plan, 0.05, 0.105)
     lidar, maps = Lidar([plan]), empty_maps(1, coverage.wanted[None].astype(np.uint8))
     maps.origin[0] = coverage.origin
+    outlines = empty_outlines(1, len(coverage.wanted), 360, 3.5, 0.05)
     for x, y in coverage.starts[::23]:
         pose = np.array([x, y, 0.0])
         ranges = lidar.cast(pose[None, None], np.zeros(1, np.int64))[0, 0]
         scan = np.where(ranges < 3.5, ranges + 1e-3, 3.5).astype(np.float32)
-        trace_scan(maps, 0, 0.05, pose, scan, lidar.directions, 3.5, 1)
+        trace_scan(maps, 0, 0.05, pose, scan, lidar.directions, 3.5, 1, outlines, 0)
     assert maps.covered[0] / coverage.wanted.sum() > 0.99

@@ -53,9 +53,7 @@ def test_results_json_has_the_schema(tmp_path: Path) -> None:
     random, frontier = document["rows"]
     assert random["metrics"]["path_length"]["values"] == [1.0, None, 3.0]
     assert random["metrics"]["path_length"]["mean"] == 2.0
-    assert frontier["metrics"] == {
-        "completeness": {"mean": 0.5, "ci_low": None, "ci_high": None, "values": [0.5]}
-    }
+    assert frontier["metrics"] == {"completeness": {"mean": 0.5, "ci_low": None, "ci_high": None, "values": [0.5]}}
 
 
 def test_the_document_is_the_same_every_time() -> None:

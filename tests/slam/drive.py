@@ -28,20 +28,24 @@ class Drive:
         wanted = (~self.raster.solid)[None].astype(np.uint8)
         self.filters = ParticleFilters(1, wanted, self.lidar.directions, 3.5, parameters=parameters)
         self._scan()
-        self.filters.start(0, 0, self.raster.origin, self.physics.poses[0, 0], self.scans[:, 0])
+        self.filters.start(0, 0, self.raster.origin, self.physics.poses[0, 0])
+        self._filter()
 
     def _scan(self) -> None:
         self.ranges = self.lidar.cast(self.physics.poses, np.zeros(1, np.int64))
         add_range_noise(0, 1, 0.01, 3.5, self.streams, self.ranges, self.scans)
 
+    def _filter(self) -> None:
+        self.filters.step(0, 0.2, self.readings[0, 0], self.scans[0, 0], self.streams[0])
+
     def run(self, commands: Iterable[tuple[float, float]]) -> tuple[np.ndarray, np.ndarray]:
         errors, covariances = [], []
         for command in commands:
             before = self.physics.poses.copy()
-            self.physics.advance(np.array([[command]]), 0.2, self.ranges.min(axis=2))
+            self.physics.advance(np.array([[command]]), 0.2, self.ranges.min(axis=2)[:, 0] < 0.3)
             read_odometry(0, 1, before, self.physics.poses, OdometryNoise(), self.streams, self.readings)
             self._scan()
-            self.filters.step(0, 1, 0.2, self.readings[:, 0], self.scans[:, 0], self.streams)
+            self._filter()
             state = self.filters.state
             errors.append(np.hypot(*(state.estimate[0] - self.physics.poses[0, 0])[:2]))
             covariances.append(state.covariance[0].copy())

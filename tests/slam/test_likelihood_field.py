@@ -44,7 +44,7 @@ def nearest_eighth(value: float) -> float:
 
 
 def stamp_oracle(whole: np.ndarray, x: float, y: float, sector: int) -> None:
-    u, v = x / 0.05 - 0.5, y / 0.05 - 0.5
+    u, v = x * (1 / 0.05) - 0.5, y * (1 / 0.05) - 0.5
     column, row = math.floor(u + 0.5), math.floor(v + 0.5)
     near_u, near_v = nearest_eighth(u), nearest_eighth(v)
     for r in range(max(row - 4, 0), min(row + 5, whole.shape[0])):
@@ -65,7 +65,7 @@ def test_tiles_hold_what_one_array_would(stamps: list[tuple[float, float, int]])
     fields = empty_fields(1, 2, 32, 48)
     whole = np.zeros((32, 48), np.uint16)
     for x, y, sector in stamps:
-        column, row = math.floor(x / 0.05), math.floor(y / 0.05)
+        column, row = math.floor(x * (1 / 0.05)), math.floor(y * (1 / 0.05))
         apart = (int(whole[row, column] & 15) - sector) % 16
         known = whole[row, column] >> 4 if min(apart, 16 - apart) <= 4 else 0
         if known / FULL < 0.75:

@@ -6,8 +6,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.slam.likelihood_field import empty_fields, register_points
-from lidarena.slam.scan_matching import MatcherParameters, determinant, invert, match, solve
+from lidarena.slam.scan_matching import MatcherParameters, match, misfit
 from lidarena.slam.scan_points import extract_points
+from lidarena.slam.symmetric import Symmetric, determinant, inverse, rotated, times
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar
 
@@ -25,9 +26,23 @@ def scan_of(plan: Floorplan, pose: np.ndarray, noise: float = 0.0) -> tuple[np.n
     ranges = lidar.cast(pose[None, None], np.zeros(1, np.int64))[0, 0]
     hit = ranges < 3.5
     ranges[hit] += noise * np.random.default_rng(0).normal(size=hit.sum())
+    return points_of(ranges.astype(np.float32), lidar.directions)
+
+
+def points_of(scan: np.ndarray, directions: np.ndarray, first: int = 0, stride: int = 1) -> tuple:
     points, flat = np.zeros((360, 5)), np.zeros(360, np.bool_)
-    count = extract_points(ranges.astype(np.float32), lidar.directions, 3.5, points, flat)
+    means, surface = np.zeros((360, 2)), np.zeros(360, np.int64)
+    count = extract_points(scan, directions, 3.5, first, stride, means, surface, points, flat)
     return points[:count], flat[:count]
+
+
+def packed(m: np.ndarray) -> Symmetric:
+    return (m[0, 0], m[0, 1], m[0, 2], m[1, 1], m[1, 2], m[2, 2])
+
+
+def unpacked(m: Symmetric) -> np.ndarray:
+    a, b, c, d, e, f = m
+    return np.array([[a, b, c], [b, d, e], [c, e, f]])
 
 
 def matched(start: np.ndarray, information: np.ndarray, plan: Floorplan = ROOM, true: np.ndarray = TRUE) -> tuple:
@@ -35,10 +50,10 @@ def matched(start: np.ndarray, information: np.ndarray, plan: Floorplan = ROOM, 
     fields = empty_fields(1, 1, 112, 512)
     origin = np.array([-1.0, -1.0])
     register_points(fields, 0, 0, true, origin, 0.05, points)
-    pose, posterior = start.copy(), np.zeros((3, 3))
+    pose = start.copy()
     arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, points[flat], MatcherParameters(iterations=25))
-    value = match(*arguments, start.copy(), information, pose, posterior)
-    return pose, posterior, value
+    value, posterior = match(*arguments, start.copy(), packed(information), pose)
+    return pose, unpacked(posterior), value
 
 
 @settings(max_examples=25, deadline=None)
@@ -85,18 +100,41 @@ def test_points_are_spaced_and_lie_on_the_walls() -> None:
 
 
 def test_a_scan_without_returns_has_no_points() -> None:
-    points, flat = np.zeros((360, 5)), np.zeros(360, np.bool_)
-    directions = np.ones((2, 360))
-    assert extract_points(np.full(360, 3.5, np.float32), directions, 3.5, points, flat) == 0
+    points, _ = points_of(np.full(360, 3.5, np.float32), np.ones((2, 360)))
+    assert len(points) == 0
 
 
+def test_every_second_point_is_one_of_all() -> None:
+    lidar = Lidar([ROOM])
+    scan = lidar.cast(TRUE[None, None], np.zeros(1, np.int64))[0, 0].astype(np.float32)
+    everything, flat = points_of(scan, lidar.directions)
+    for first in (0, 1):
+        some, some_flat = points_of(scan, lidar.directions, first, 2)
+        assert np.array_equal(some, everything[first::2])
+        assert np.array_equal(some_flat, flat[first::2])
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.05, 0.3), st.floats(-3, 3))
+def test_the_misfit_is_least_where_the_scan_was_taken(away: float, direction: float) -> None:
+    points, _ = scan_of(ROOM, TRUE)
+    fields, origin = empty_fields(1, 1, 112, 512), np.array([-1.0, -1.0])
+    register_points(fields, 0, 0, TRUE, origin, 0.05, points)
+    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, points)
+    beside = TRUE + away * np.array([math.cos(direction), math.sin(direction), 0.0])
+    assert 0.0 <= misfit(*arguments, TRUE) < misfit(*arguments, beside) <= len(points)
+
+
+@settings(deadline=None)
 @given(st.lists(st.floats(-3, 3), min_size=9, max_size=9), st.lists(st.floats(-3, 3), min_size=3, max_size=3))
 def test_three_by_three_algebra_agrees_with_numpy(entries: list[float], right: list[float]) -> None:
     root = np.array(entries).reshape(3, 3)
     matrix = root @ root.T + 0.1 * np.eye(3)
-    inverse, solution = np.zeros((3, 3)), np.zeros(3)
-    invert(matrix, inverse)
-    solve(matrix, np.array(right), solution)
-    assert determinant(matrix) == pytest.approx(np.linalg.det(matrix), rel=1e-6)
-    assert inverse == pytest.approx(np.linalg.inv(matrix), rel=1e-5, abs=1e-7)
-    assert solution == pytest.approx(np.linalg.solve(matrix, right), rel=1e-5, abs=1e-6)
+    m = packed(matrix)
+    assert determinant(m) == pytest.approx(np.linalg.det(matrix), rel=1e-6)
+    assert unpacked(inverse(m)) == pytest.approx(np.linalg.inv(matrix), rel=1e-5, abs=1e-7)
+    vector = (right[0], right[1], right[2])
+    assert times(m, vector) == pytest.approx(matrix @ right, rel=1e-9, abs=1e-9)
+    theta = right[0]
+    turn = np.array([[math.cos(theta), -math.sin(theta), 0], [math.sin(theta), math.cos(theta), 0], [0, 0, 1]])
+    assert unpacked(rotated(m, theta)) == pytest.approx(turn @ matrix @ turn.T, rel=1e-9, abs=1e-9)

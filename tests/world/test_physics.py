@@ -1,12 +1,14 @@
 import math
 
 import numpy as np
+import pymunk
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.physics import Physics
+from lidarena.world.lidar import Lidar
+from lidarena.world.physics import Physics, chord, may_touch
 
 HALL = Floorplan.from_shapes("hall", (0, 0, 20, 20), walls=[(15, 0, 15, 20)], start=(5, 5, 0))
 
@@ -17,7 +19,7 @@ def drive(
     physics = Physics(1)
     physics.place(0, HALL, [pose])
     for _ in range(steps):
-        physics.advance(np.array([[[speed, rate]]]), duration, np.array([[3.0 if far else 0.0]]))
+        physics.advance(np.array([[[speed, rate]]]), duration, np.array([not far]))
     return physics.poses[0, 0]
 
 
@@ -48,7 +50,7 @@ def test_two_robots_cannot_share_a_place() -> None:
     physics = Physics(1, robots=2)
     physics.place(0, HALL, [(5, 5, 0), (6, 5, math.pi)])
     for _ in range(20):
-        physics.advance(np.array([[[0.3, 0.0], [0.3, 0.0]]]), 0.2, np.zeros((1, 2)))
+        physics.advance(np.array([[[0.3, 0.0], [0.3, 0.0]]]), 0.2, np.ones(1, np.bool_))
     gap = np.hypot(*(physics.poses[0, 0, :2] - physics.poses[0, 1, :2]))
     assert gap >= 2 * 0.105 - 0.02
 
@@ -57,5 +59,37 @@ def test_placing_again_forgets_the_old_robot() -> None:
     physics = Physics(1)
     physics.place(0, HALL, [(5, 5, 0)])
     physics.place(0, HALL, [(7, 7, 1)])
-    physics.advance(np.zeros((1, 1, 2)), 0.2, np.array([[3.0]]))
+    physics.advance(np.zeros((1, 1, 2)), 0.2, np.zeros(1, np.bool_))
     assert physics.poses[0, 0] == pytest.approx((7, 7, 1))
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.floats(-0.5, 0.5), st.floats(-1.0, 1.0), st.floats(-3.1, 3.1), st.floats(0.04, 0.5))
+def test_gliding_is_pymunks_own_step_to_the_bit(speed: float, rate: float, theta: float, duration: float) -> None:
+    space, body = pymunk.Space(), pymunk.Body(1.0, 1.0)
+    space.add(body, pymunk.Circle(body, 0.105))
+    body.position, body.angle = (5.0, 5.0), theta
+    body.velocity, body.angular_velocity = chord(theta, speed, rate, duration), rate
+    space.step(duration)
+    physics = Physics(1)
+    physics.place(0, HALL, [(5.0, 5.0, theta)])
+    physics.advance(np.array([[[speed, rate]]]), duration, np.zeros(1, np.bool_))
+    assert physics.poses[0, 0, :2].tolist() == list(body.position)
+    assert physics.poses[0, 0, 2] == pytest.approx(math.remainder(body.angle, 2 * math.pi), abs=1e-15)
+
+
+@settings(max_examples=100, deadline=None)
+@given(st.floats(13.5, 14.95), st.floats(0.2, 0.5), st.floats(-1.0, 1.0), st.floats(-3.1, 3.1))
+def test_whoever_is_not_near_touches_nothing(x: float, speed: float, rate: float, theta: float) -> None:
+    lidar, physics, near = Lidar([HALL]), Physics(1), np.zeros(1, np.bool_)
+    physics.place(0, HALL, [(x, 5.0, theta)])
+    command = np.array([[[speed, rate]]])
+    ranges = lidar.cast(physics.poses, np.zeros(1, np.int64))
+    may_touch(command, 0.2, 0.105, ranges, lidar.directions, near)
+    centre = physics.poses[0, 0, 0]
+    physics.advance(command, 0.2, np.zeros(1, np.bool_))  # as if nothing were there
+    closest = HALL.clearance(np.array([[centre, 5.0], physics.poses[0, 0, :2]])).min()
+    if not near[0]:
+        assert closest > 0.105
+    elif closest > 0.105 + 0.12:
+        raise AssertionError("asks the solver although the wall is out of reach")
