@@ -14,6 +14,7 @@ from stable_baselines3.common.callbacks import BaseCallback
 from stable_baselines3.common.logger import Logger
 from stable_baselines3.common.utils import LinearSchedule
 from stable_baselines3.common.vec_env import VecEnv, VecNormalize
+from torch.distributions import Distribution
 
 from lidarena.agents import checkpoint, run_folder
 from lidarena.agents.interruption import StopRequest, TrainingStopped, stop_on_signal
@@ -65,7 +66,7 @@ def train(
         raise ConfigError("a training needs a configuration, or a run folder to go on with")
     else:
         start = None
-    with _torch_threads(config.torch_threads), _model(config) as model:
+    with _torch_settings(config.torch_threads), _model(config) as model:
         if resume is None:
             folder = run_folder.claim(config.out, exact_out)
         seconds = checkpoint.restore(start, model) if start else 0.0
@@ -153,13 +154,13 @@ class _Run:
         self.curve.add(step, self.seconds, values)
         self._row_at, self._row_seconds = step, self.seconds
         if last or step // self.config.checkpoint_every > self._saved_at // self.config.checkpoint_every:
-            self.save()
+            self.save(last)
         return _summary(values)
 
-    def save(self) -> None:
-        """Write policy and checkpoint; the old ones stay until the new ones are whole."""
+    def save(self, last: bool) -> None:
+        """Write policy and checkpoint, the last one small; the old ones stay until the new ones are whole."""
         self.save_policy()
-        checkpoint.save(self.folder, self.model, self.seconds)
+        checkpoint.save(self.folder, self.model, self.seconds, small=last)
         self._saved_at = self.model.num_timesteps
 
     def save_policy(self) -> None:
@@ -207,7 +208,7 @@ class _BetweenUpdates(BaseCallback):
         self._first = False
 
     def _on_rollout_end(self) -> None:
-        # Numba sets OpenMP's number of threads, and so PyTorch's, when its pool starts: at the worlds' first step.
+        # Numba sets OpenMP's number of threads, and so PyTorch's, where worlds of one's own start its pool.
         torch.set_num_threads(self._run.config.torch_threads)
 
     def _on_step(self) -> bool:
@@ -253,13 +254,16 @@ def _model(config: TrainingConfig) -> Iterator[PPO]:
 
 
 @contextmanager
-def _torch_threads(count: int) -> Iterator[None]:
-    before = torch.get_num_threads()
-    torch.set_num_threads(count)
+def _torch_settings(threads: int) -> Iterator[None]:
+    """Set PyTorch's threads, and leave out the checks that take a tenth of the learning: nothing here is user input."""
+    before, checks = torch.get_num_threads(), Distribution._validate_args
+    torch.set_num_threads(threads)
+    Distribution.set_default_validate_args(False)
     try:
         yield
     finally:
         torch.set_num_threads(before)
+        Distribution.set_default_validate_args(checks)
 
 
 def _tell(line: str, progress: bool) -> None:

@@ -10,6 +10,7 @@ from lidarena.envs.exploration_kernels import sense_and_filter, sense_and_map
 from lidarena.envs.exploration_options import ExplorationOptions
 from lidarena.envs.worker_threads import on_threads
 from lidarena.slam.known_pose_mapping import KnownPoseMapper
+from lidarena.slam.likelihood_field import Fields, tiles_in_use
 from lidarena.slam.particle_filter import ParticleFilters
 from lidarena.slam.particle_filter_state import FilterParameters
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
@@ -148,7 +149,9 @@ class ExplorationCore:
         named |= {f"maps.{name}": array for name, array in self.maps._asdict().items() if name != "wanted"}
         if self.filters is not None:
             state = self.filters.state._asdict()
-            named |= {f"fields.{name}": array for name, array in state.pop("fields")._asdict().items()}
+            fields: Fields = state.pop("fields")
+            named |= {f"fields.{name}": array for name, array in fields._asdict().items()}
+            named["fields.tiles"] = fields.tiles[:, : tiles_in_use(fields)]  # the rest was never written, or is stale
             named |= {f"filter.{name}": array for name, array in state.items()}
         elif self.mapper is not None:
             named["since"] = self.mapper.since
@@ -156,6 +159,8 @@ class ExplorationCore:
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of another core with the same options."""
+        if self.filters is not None:
+            self.filters.state.fields.references[...] = saved["fields.references"]  # how many tiles there are to load
         for name, array in self.arrays().items():
             array[...] = saved[name]
         for world in range(self.worlds):

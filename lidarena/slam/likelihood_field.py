@@ -86,6 +86,11 @@ def empty_fields(worlds: int, particles: int, rows: int, columns: int) -> Fields
     return fields
 
 
+def tiles_in_use(fields: Fields) -> int:
+    """How many tiles of every world, counted from the first, hold all that any table names."""
+    return int(np.flatnonzero(fields.references.any(axis=0)).max(initial=0)) + 1
+
+
 @leaf
 def clear_fields(fields: Fields, w: int) -> None:
     """Forget every wall of world w."""
