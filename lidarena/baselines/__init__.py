@@ -1,5 +1,6 @@
 """The classical methods as policies on the same interface as the learned agents."""
 
+from lidarena.baselines import ealc as _ealc  # registers itself
 from lidarena.baselines import frontier as _frontier  # registers itself
 from lidarena.baselines import random as _random  # registers itself
 from lidarena.baselines.policy import Policy
@@ -7,4 +8,4 @@ from lidarena.baselines.registry import make, names, register
 
 __all__ = ["Policy", "make", "names", "register"]
 
-del _frontier, _random
+del _ealc, _frontier, _random

@@ -14,19 +14,20 @@ from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.scan_points import extract_points
 from lidarena.slam.symmetric import Symmetric, inverse, load, rotated
 from lidarena.slam.uncertainty import d_optimality, pose_moments, weight_entropy
-from lidarena.world.kernels import leaf
+from lidarena.world.kernels import leaf, merged
 from lidarena.world.odometry import deviations, move, relative_motion
 from lidarena.world.random_streams import normal, uniform
 
 _SAMPLED_STARTS = 8
 """Sampled motions that are tried before the first particle is matched."""
-_REGISTERED = 2
+_REGISTERED = np.int64(2)
 """Every how manyth point of a scan is used; which ones, changes from scan to scan."""
+_ENTER, _TAKE_BACK = np.int64(1), np.int64(-1)  # plain numbers would be types of their own, each compiled apart
 _LEAST_VARIANCE = 1e-8
 """Added to the odometry's covariance (m², rad²), so that a robot at rest has an invertible prior."""
 
 
-@leaf
+@merged
 def step_filter(
     w: int,
     duration: float,
@@ -44,8 +45,7 @@ def step_filter(
 ) -> None:
     """Advance world w's filter by one odometry reading and, where due, one scan.
 
-    A filter that has processed no scan yet starts with this one. (Starting is not a kernel of its own: both would be
-    compiled with the same callees, and that is what takes the time.)
+    A filter that has processed no scan yet starts with this one.
 
     Args:
         w: World.
@@ -62,13 +62,12 @@ def step_filter(
         scratch: Room to work in.
         s: Which row of it; no other thread may use it meanwhile.
     """
-    if state.updates[w] == 0:
-        _begin(w, resolution, max_range, directions, parameters, scan, s, state, maps, scratch)
-    else:
+    due = state.updates[w] == 0
+    if not due:
         predict(w, duration, reading, parameters, stream, state)
         due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
-        if due or state.since[w, 2] > parameters.temporal_update:
-            update(w, resolution, max_range, directions, parameters, scan, stream, s, state, maps, scratch)
+    if due or state.since[w, 2] > parameters.temporal_update:
+        update(w, resolution, max_range, directions, parameters, scan, stream, s, state, maps, scratch)
     _summarise(w, state)
 
 
@@ -119,7 +118,7 @@ def _compound_covariance(
     covariance[2, 2] += vt
 
 
-@leaf
+@merged
 def update(
     w: int,
     resolution: float,
@@ -133,29 +132,45 @@ def update(
     maps: OccupancyMaps,
     scratch: Scratch,
 ) -> None:
-    """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample at low N_eff."""
+    """Match, weigh, draw and register a scan (beams,) in every particle of world w; publish; resample at low N_eff.
+
+    The first scan of all is registered whole, and the same in every particle. (It takes this way too, and not one of
+    its own, since every call below takes seconds to compile.)
+    """
+    begins = state.updates[w] == 0
+    stride = np.int64(1) if begins else _REGISTERED  # neighbours lie within each other's stamp: take turns
     points, motion, prior = scratch.points[s], scratch.poses[s, 0], scratch.poses[s, 1]
-    first = state.updates[w] % _REGISTERED  # neighbours lie within each other's stamp: take turns
     count = extract_points(
-        scan, directions, max_range, first, _REGISTERED, scratch.means[s], scratch.numbers[s], points, scratch.flat[s]
-    )
+        scan, directions, max_range, state.updates[w] % stride, stride, scratch.means[s], scratch.numbers[s], points,
+        scratch.flat[s],
+    )  # fmt: skip
     chosen = scratch.chosen[s, : _choose(s, count, scratch)]
     local = inverse(load(state.motion_covariance[w], _LEAST_VARIANCE))
-    _likeliest_motion(w, resolution, chosen, motion, prior, state, maps)
+    if begins:
+        clear_fields(state.fields, w)
+    else:
+        _likeliest_motion(w, resolution, chosen, motion, prior, state, maps)
     for i in range(parameters.particles):
-        copy_vector(prior, state.anchors[w, i])
-        information = rotated(local, prior[2])
-        copy_vector(state.particles[w, i], prior)
-        move(state.particles[w, i], motion[0], motion[1], motion[2])
-        move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
-        likelihood, posterior = match(
-            state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen, parameters.matcher,
-            prior, information, state.particles[w, i],
-        )  # fmt: skip
-        motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
-        state.log_weights[w, i] += parameters.likelihood_gain * likelihood
-        _draw(state.particles[w, i], posterior, stream)
-        register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
+        if begins:
+            state.ancestors[w, i] = i
+            state.log_weights[w, i] = 0.0
+        else:
+            copy_vector(prior, state.anchors[w, i])
+            information = rotated(local, prior[2])
+            copy_vector(state.particles[w, i], prior)
+            move(state.particles[w, i], motion[0], motion[1], motion[2])
+            move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
+            likelihood, posterior = match(
+                state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen,
+                parameters.matcher, prior, information, state.particles[w, i],
+            )  # fmt: skip
+            motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
+            state.log_weights[w, i] += parameters.likelihood_gain * likelihood
+            _draw(state.particles[w, i], posterior, stream)
+        if begins and i > 0:
+            copy_field(state.fields, w, i * 0, i)
+        else:
+            register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
         copy_vector(state.anchors[w, i], state.particles[w, i])
     _normalise(w, state)
     _publish(w, resolution, max_range, directions, parameters, scan, state, maps, scratch.outlines, s)
@@ -264,15 +279,19 @@ def _publish(
         state.node_parents[w, slot, i] = state.ancestors[w, i]
         state.ancestors[w, i] = i
     best = _best_particle(w, slot, now, parameters, state)
-    trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, 1, outlines, s)
+    trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, _ENTER, outlines, s)
     state.published[w, slot] = best
     parent = np.int64(state.node_parents[w, slot, best])
     past = now - 1
     while past >= 0 and past > now - history and state.published[w, past % history] != parent:
         slot = past % history
         shown, node = state.published[w, slot], state.node_poses[w, slot]
-        trace_scan(maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, -1, outlines, s)
-        trace_scan(maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, 1, outlines, s)
+        trace_scan(
+            maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, _TAKE_BACK, outlines, s
+        )
+        trace_scan(
+            maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, _ENTER, outlines, s
+        )
         state.published[w, slot] = parent
         parent = np.int64(state.node_parents[w, slot, parent])
         past -= 1
@@ -333,38 +352,6 @@ def _summarise(w: int, state: FilterState) -> None:
     """Mean pose, covariance and D-optimality of world w."""
     pose_moments(state.particles[w], state.weights[w], state.estimate[w], state.covariance[w])
     state.criteria[w, 0] = d_optimality(state.covariance[w])
-
-
-@leaf
-def _begin(
-    w: int,
-    resolution: float,
-    max_range: float,
-    directions: NDArray[np.float64],
-    parameters: FilterParameters,
-    scan: NDArray[np.float32],
-    s: int,
-    state: FilterState,
-    maps: OccupancyMaps,
-    scratch: Scratch,
-) -> None:
-    """Start world w's filter with its first scan (beams,), all particles where they were put."""
-    points = scratch.points[s]
-    count = extract_points(
-        scan, directions, max_range, 0, 1, scratch.means[s], scratch.numbers[s], points, scratch.flat[s]
-    )
-    clear_fields(state.fields, w)
-    for i in range(parameters.particles):
-        if i == 0:
-            register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
-        else:
-            copy_field(state.fields, w, 0, i)
-        copy_vector(state.anchors[w, i], state.particles[w, i])
-        state.ancestors[w, i] = i
-        state.log_weights[w, i] = 0.0
-    _forget_motion(w, state)
-    _normalise(w, state)
-    _publish(w, resolution, max_range, directions, parameters, scan, state, maps, scratch.outlines, s)
 
 
 @leaf

@@ -42,7 +42,7 @@ class MatcherParameters(NamedTuple):
 
     points: int = 32
     iterations: int = 8
-    tolerance: float = 2e-3
+    tolerance: float = 4e-3
     deviation: float = 0.02
 
 

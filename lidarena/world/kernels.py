@@ -42,6 +42,12 @@ def inlined(function: Callable[..., Result]) -> Callable[..., Result]:
     return compiled
 
 
+def merged(function: Callable[..., Result]) -> Callable[..., Result]:
+    """Compile a large ``leaf`` only as a part of its callers, not by itself and then again with each of them."""
+    compiled: Callable[..., Result] = njit(**_LEAF, inline="always")(function)
+    return compiled
+
+
 def _take_next(context: Any, counter: Any) -> Any:
     def generate(context: Any, builder: Any, signature: Any, arguments: Any) -> Any:
         array = context.make_array(signature.args[0])(context, builder, arguments[0])

@@ -178,7 +178,7 @@ def _see_edge(
     a, b = ey / cross, -ex / cross
     _raise_run(begin, min(end, beams), a, b, directions, inverse)
     if end > beams:
-        _raise_run(0, end - beams, a, b, directions, inverse)
+        _raise_run(begin * 0, end - beams, a, b, directions, inverse)
 
 
 @leaf

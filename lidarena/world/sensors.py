@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import leaf
+from lidarena.world.kernels import merged
 from lidarena.world.lidar import LidarSpec, Scenery, add_range_noise, cast_beams
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
 
@@ -46,7 +46,7 @@ def empty_sensors(worlds: int, beams: int) -> Sensors:
     )
 
 
-@leaf
+@merged
 def read_sensors(
     w: int,
     before: NDArray[np.float64],
