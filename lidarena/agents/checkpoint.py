@@ -31,7 +31,7 @@ Arrays = dict[str, NDArray[Any]]
 KEPT = 2
 """Checkpoints that stay in a run folder: the newest, and one before it."""
 
-_VERSION = 1
+_VERSION = 2
 _FILES = ("model.safetensors", "worlds.npz", "trainer.npz", "trainer.json")
 _NORMALIZER = ("mean", "var", "count")
 

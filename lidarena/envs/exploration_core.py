@@ -40,7 +40,8 @@ class ExplorationCore:
     Attributes:
         physics: The true poses; everything that the robot may know is in the attributes below.
         sensors: Scans, odometry, paths, collisions.
-        estimate: (worlds, 3) pose; covariance (worlds, 3, 3); criteria (worlds, 3): D-optimality, entropy, N_eff.
+        estimate: (worlds, 3) pose; covariance (worlds, 3, 3); criteria (worlds, 4): D-optimality,
+            entropy, N_eff, gmapping's entropy.
         wanted_cells: (plans,) size of K of each floor plan.
     """
 
@@ -85,7 +86,8 @@ class ExplorationCore:
             self.maps = self.mapper.maps
             self.estimate = self.physics.poses[:, 0]
             self.covariance = np.tile(np.diag(COVARIANCE_FLOOR), (worlds, 1, 1))
-            certain = (float(np.prod(COVARIANCE_FLOOR) ** (1 / 3)), 0.0, float(self.options.particles))
+            n = float(self.options.particles)
+            certain = (float(np.prod(COVARIANCE_FLOOR) ** (1 / 3)), 0.0, n, float(np.log(n)))
             self.criteria = np.tile(np.array(certain), (worlds, 1))
 
     def reset_world(self, world: int, rng: np.random.Generator) -> None:

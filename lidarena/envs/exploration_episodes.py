@@ -123,6 +123,7 @@ class ExplorationEpisodes:
             "d_optimality": core.criteria[:, 0].copy(),
             "entropy": core.criteria[:, 1].copy(),
             "n_eff": core.criteria[:, 2].copy(),
+            "entropy_gmapping": core.criteria[:, 3].copy(),
             "path_length": core.sensors.path_length.copy(),
             "time": self._steps * self.options.decision_period,
             "collision": core.sensors.collision.copy(),

@@ -8,8 +8,9 @@ from typing import Any
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.refusals import ConfigError, MapError, suggest
 
-ETA = 1.0
-"""η of the paper's uncertainty reward, as printed."""
+ETA = 1.2e-4
+"""η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). The paper
+prints 1, with which every step is worth 2."""
 
 MapSpec = str | Floorplan
 _CHOICES = {

@@ -107,7 +107,7 @@ def _draw_belief(canvas: Canvas, core: ExplorationCore, world: int) -> None:
 
 
 def _headline(core: ExplorationCore, world: int, name: str) -> str:
-    d_optimality, _, n_eff = core.criteria[world]
+    d_optimality, _, n_eff, _ = core.criteria[world]
     path = core.sensors.path_length[world]
     return (
         f"{name}   completeness {100 * core.completeness[world]:.1f} %   path {path:.1f} m   "

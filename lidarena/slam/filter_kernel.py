@@ -13,7 +13,7 @@ from lidarena.slam.scan_matching import match, misfit
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.scan_points import extract_points
 from lidarena.slam.symmetric import Symmetric, inverse, load, rotated
-from lidarena.slam.uncertainty import d_optimality, pose_moments, weight_entropy
+from lidarena.slam.uncertainty import d_optimality, pose_moments, score_entropy, weight_entropy
 from lidarena.world.kernels import leaf, merged
 from lidarena.world.odometry import deviations, move, relative_motion
 from lidarena.world.random_streams import normal, uniform
@@ -153,7 +153,7 @@ def update(
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
-            state.log_weights[w, i] = 0.0
+            state.log_weights[w, i] = state.scores[w, i] = 0.0
         else:
             copy_vector(prior, state.anchors[w, i])
             information = rotated(local, prior[2])
@@ -166,6 +166,7 @@ def update(
             )  # fmt: skip
             motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
             state.log_weights[w, i] += parameters.likelihood_gain * likelihood
+            state.scores[w, i] += likelihood
             _draw(state.particles[w, i], posterior, stream)
         if begins and i > 0:
             copy_field(state.fields, w, i * 0, i)
@@ -239,7 +240,7 @@ def _draw(pose: NDArray[np.float64], information: Symmetric, stream: NDArray[np.
 
 @leaf
 def _normalise(w: int, state: FilterState) -> None:
-    """Normalise world w's weights and compute their entropy and N_eff."""
+    """Normalise world w's weights and compute their entropies and N_eff."""
     n = state.log_weights.shape[1]
     top, total = -math.inf, 0.0
     for i in range(n):
@@ -254,6 +255,7 @@ def _normalise(w: int, state: FilterState) -> None:
         squares += state.weights[w, i] ** 2
     state.criteria[w, 1] = weight_entropy(state.weights[w])
     state.criteria[w, 2] = 1.0 / squares
+    state.criteria[w, 3] = score_entropy(state.scores[w])
 
 
 @leaf
@@ -343,7 +345,7 @@ def _resample(w: int, stream: NDArray[np.uint64], copies: NDArray[np.int64], sta
             copy_field(state.fields, w, i, dead)
             dead += 1
     for i in range(n):
-        state.log_weights[w, i] = 0.0
+        state.log_weights[w, i] = state.scores[w, i] = 0.0
         state.weights[w, i] = 1.0 / n
 
 

@@ -87,6 +87,7 @@ class FilterState(NamedTuple):
         anchors: (W, N, 3) poses at the last processed scan.
         log_weights: (W, N).
         weights: (W, N) normalised.
+        scores: (W, N) log-likelihoods of the scans since the last resampling, added up as they are.
         motion: (W, 3) odometry since the last processed scan, in the robot's frame then.
         motion_covariance: (W, 3, 3) of it.
         since: (W, 3) distance [m], turn [rad] and time [s] since then.
@@ -98,7 +99,7 @@ class FilterState(NamedTuple):
         updates: (W,) scans processed.
         estimate: (W, 3) weighted mean pose.
         covariance: (W, 3, 3).
-        criteria: (W, 3) D-optimality, entropy of the weights, N_eff.
+        criteria: (W, 4) D-optimality, entropy of the weights, N_eff, gmapping's entropy.
     """
 
     fields: Fields
@@ -106,6 +107,7 @@ class FilterState(NamedTuple):
     anchors: NDArray[np.float64]
     log_weights: NDArray[np.float64]
     weights: NDArray[np.float64]
+    scores: NDArray[np.float64]
     motion: NDArray[np.float64]
     motion_covariance: NDArray[np.float64]
     since: NDArray[np.float64]
@@ -129,6 +131,7 @@ def empty_state(worlds: int, rows: int, columns: int, beams: int, parameters: Fi
         anchors=np.zeros((worlds, n, 3)),
         log_weights=np.zeros((worlds, n)),
         weights=np.full((worlds, n), 1.0 / n),
+        scores=np.zeros((worlds, n)),
         motion=np.zeros((worlds, 3)),
         motion_covariance=np.zeros((worlds, 3, 3)),
         since=np.zeros((worlds, 3)),
@@ -140,5 +143,5 @@ def empty_state(worlds: int, rows: int, columns: int, beams: int, parameters: Fi
         updates=np.zeros(worlds, np.int64),
         estimate=np.zeros((worlds, 3)),
         covariance=np.zeros((worlds, 3, 3)),
-        criteria=np.zeros((worlds, 3)),
+        criteria=np.zeros((worlds, 4)),
     )

@@ -43,6 +43,26 @@ def weight_entropy(weights: NDArray[np.float64]) -> float:
 
 
 @leaf
+def score_entropy(scores: NDArray[np.float64]) -> float:
+    """What gmapping publishes as ``~entropy`` [nat]: −Σ p ln p with p_i = l_i / Σ l over *log*-likelihoods (N,) ≤ 0.
+
+    For comparison with DA-SLAM's "average uncertainty" only: it mostly tells how long ago the last resampling was,
+    where all l are 0 and it is ln N.
+    """
+    total = 0.0
+    for score in scores:
+        total += score
+    if total == 0.0:
+        return math.log(scores.shape[0])
+    entropy = 0.0
+    for score in scores:
+        p = score / total
+        if p > 0.0:
+            entropy -= p * math.log(p)
+    return entropy
+
+
+@leaf
 def pose_moments(
     particles: NDArray[np.float64],
     weights: NDArray[np.float64],

@@ -2,7 +2,7 @@ import math
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.slam.uncertainty import (
@@ -11,12 +11,14 @@ from lidarena.slam.uncertainty import (
     d_optimality,
     e_optimality,
     pose_moments,
+    score_entropy,
     weight_entropy,
 )
 
 ENTRIES = st.lists(st.floats(-2, 2), min_size=9, max_size=9)
 
 
+@settings(deadline=None)
 @given(ENTRIES)
 def test_criteria_are_means_of_the_eigenvalues(entries: list[float]) -> None:
     root = np.array(entries).reshape(3, 3)
@@ -41,6 +43,16 @@ def test_headings_are_averaged_on_the_circle() -> None:
     assert abs(mean[2]) == pytest.approx(math.pi)
     assert covariance[2, 2] == pytest.approx(0.01 + COVARIANCE_FLOOR[2])
     assert covariance[0, 2] == pytest.approx(0.1)
+
+
+@settings(deadline=None)
+@given(st.lists(st.floats(-1e4, -1e-3), min_size=2, max_size=50))
+def test_gmappings_entropy_is_that_of_the_normalised_log_likelihoods(scores: list[float]) -> None:
+    shares = np.array(scores) / np.sum(scores)
+    value = score_entropy(np.array(scores))
+    assert value == pytest.approx(-np.sum(shares * np.log(shares)), rel=1e-9)
+    assert 0.0 <= value <= math.log(len(scores)) + 1e-9
+    assert score_entropy(np.zeros(len(scores))) == pytest.approx(math.log(len(scores)))
 
 
 def test_coinciding_particles_are_certain_but_not_singular() -> None:

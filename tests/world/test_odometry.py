@@ -1,6 +1,6 @@
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.world.odometry import OdometryNoise, deviations, move, read_odometry, relative_motion, wrap
@@ -17,6 +17,7 @@ def test_wrapped_angles_lie_in_the_half_open_turn_and_mean_the_same(angle: float
     assert np.cos(wrapped - angle) == pytest.approx(1.0)
 
 
+@settings(deadline=None)
 @given(PLACE, PLACE, ANGLE, PLACE, PLACE, ANGLE)
 def test_moving_by_the_relative_motion_arrives(x: float, y: float, t: float, u: float, v: float, s: float) -> None:
     before, after = np.array([x, y, wrap(t)]), np.array([u, v, wrap(s)])
