@@ -77,7 +77,7 @@ def outline_scan(
     heads, crossings, reaches = outlines.heads[s], outlines.crossings[s], outlines.reaches[s]
     beams, per_cell = scan.shape[0], 1.0 / resolution
     _find_reaches(scan, directions, max_range, per_cell, reaches)
-    used = np.int64(0)  # a plain 0 would be a type of its own, compiled apart
+    used = int(np.int64(0))  # a plain 0 would be a type of its own, compiled apart
     before_u, before_v = _end(u, v, cos, sin, directions, beams - 1, reaches[beams - 1, 1])
     for k in range(beams):
         right_u, right_v = _end(u, v, cos, sin, directions, k, reaches[k, 0])
