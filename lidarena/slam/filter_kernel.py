@@ -22,7 +22,8 @@ _SAMPLED_STARTS = 8
 """Sampled motions that are tried before the first particle is matched."""
 _REGISTERED = np.int64(2)
 """Every how manyth point of a scan is used; which ones, changes from scan to scan."""
-_ENTER, _TAKE_BACK = np.int64(1), np.int64(-1)  # plain numbers would be types of their own, each compiled apart
+# plain numbers as arguments would be types of their own, each compiled apart
+_ENTER, _TAKE_BACK, _FIRST = np.int64(1), np.int64(-1), np.int64(0)
 _LEAST_VARIANCE = 1e-8
 """Added to the odometry's covariance (m², rad²), so that a robot at rest has an invertible prior."""
 
@@ -169,7 +170,7 @@ def update(
             state.scores[w, i] += likelihood
             _draw(state.particles[w, i], posterior, stream)
         if begins and i > 0:
-            copy_field(state.fields, w, i * 0, i)
+            copy_field(state.fields, w, _FIRST, i)
         else:
             register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
         copy_vector(state.anchors[w, i], state.particles[w, i])

@@ -19,6 +19,7 @@ from lidarena.world.random_streams import normal
 
 TILE = 1.0
 """Side of the tiles by which edges are looked up [m]."""
+_FIRST_BEAM = np.int64(0)  # a plain 0 as an argument would be a type of its own, compiled apart
 _TOUCH = 1e-9
 """Beams this close (in beam spacings) to an edge's end still hit it, so that no beam slips between two edges."""
 
@@ -178,7 +179,7 @@ def _see_edge(
     a, b = ey / cross, -ex / cross
     _raise_run(begin, min(end, beams), a, b, directions, inverse)
     if end > beams:
-        _raise_run(begin * 0, end - beams, a, b, directions, inverse)
+        _raise_run(_FIRST_BEAM, end - beams, a, b, directions, inverse)
 
 
 @leaf
