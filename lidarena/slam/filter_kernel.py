@@ -6,9 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.copying import copy_matrix, copy_vector
-from lidarena.slam.likelihood_field import clear_fields, copy_field, register_points
+from lidarena.slam.likelihood_field import clear_fields, copy_field
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState, Scratch
+from lidarena.slam.point_blocks import BLOCK
+from lidarena.slam.registration import register_points
 from lidarena.slam.scan_matching import match, misfit
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.scan_points import extract_points
@@ -145,12 +147,13 @@ def update(
         scan, directions, max_range, state.updates[w] % stride, stride, scratch.means[s], scratch.numbers[s], points,
         scratch.flat[s],
     )  # fmt: skip
-    chosen = scratch.chosen[s, : _choose(s, count, scratch)]
+    chosen, matched = scratch.chosen[s], _choose(s, count, parameters.matcher.points, scratch)
+    reals, integers = scratch.work.reals[s], scratch.work.integers[s]
     local = inverse(load(state.motion_covariance[w], _LEAST_VARIANCE))
     if begins:
         clear_fields(state.fields, w)
     else:
-        _likeliest_motion(w, resolution, chosen, motion, prior, state, maps)
+        _likeliest_motion(w, resolution, chosen, matched, motion, prior, reals, integers, state, maps)
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
@@ -163,7 +166,7 @@ def update(
             move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
             likelihood, posterior = match(
                 state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen,
-                parameters.matcher, prior, information, state.particles[w, i],
+                matched, reals, integers, parameters.matcher, prior, information, state.particles[w, i],
             )  # fmt: skip
             motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
             state.log_weights[w, i] += parameters.likelihood_gain * likelihood
@@ -172,7 +175,9 @@ def update(
         if begins and i > 0:
             copy_field(state.fields, w, _FIRST, i)
         else:
-            register_points(state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points[:count])
+            register_points(
+                state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points, count, reals, integers
+            )
         copy_vector(state.anchors[w, i], state.particles[w, i])
     _normalise(w, state)
     _publish(w, resolution, max_range, directions, parameters, scan, state, maps, scratch.outlines, s)
@@ -186,8 +191,11 @@ def _likeliest_motion(
     w: int,
     resolution: float,
     points: NDArray[np.float64],
+    count: int,
     motion: NDArray[np.float64],
     pose: NDArray[np.float64],
+    reals: NDArray[np.float64],
+    integers: NDArray[np.int32],
     state: FilterState,
     maps: OccupancyMaps,
 ) -> None:
@@ -202,23 +210,28 @@ def _likeliest_motion(
         dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
         copy_vector(pose, state.anchors[w, 0])
         move(pose, dx, dy, dtheta)
-        missed = misfit(state.fields.tiles[w], state.fields.table[w, 0], maps.origin[w], resolution, points, pose)
+        missed = misfit(
+            state.fields.tiles[w], state.fields.table[w, 0], maps.origin[w], resolution, points, count, reals, integers,
+            pose,
+        )  # fmt: skip
         if missed < least:
             least = missed
             motion[0], motion[1], motion[2] = dx, dy, dtheta
 
 
 @leaf
-def _choose(s: int, count: int, scratch: Scratch) -> int:
-    """Copy points with a normal to ``chosen``, evenly over the scan; returns how many."""
+def _choose(s: int, count: int, wanted: int, scratch: Scratch) -> int:
+    """Copy ``wanted`` points with a normal to ``chosen``, evenly over the scan; returns how many there are."""
     usable, total = scratch.numbers[s], 0
     for i in range(count):
         if scratch.flat[s, i]:
             usable[total] = i
             total += 1
-    most: int = min(scratch.chosen.shape[1], total)
+    most: int = min(wanted, total)
     for i in range(most):
-        copy_vector(scratch.chosen[s, i], scratch.points[s, usable[i * total // most]])
+        j = usable[i * total // most]
+        for k in range(5):
+            scratch.chosen[s, i // BLOCK, k, i % BLOCK] = scratch.points[s, j // BLOCK, k, j % BLOCK]
     return most
 
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import Fields, empty_fields
+from lidarena.slam.point_blocks import Workspace, empty_blocks, empty_workspaces
 from lidarena.slam.scan_matching import MatcherParameters
 from lidarena.slam.scan_outline import Outlines, empty_outlines
 from lidarena.world.odometry import OdometryNoise
@@ -46,10 +47,11 @@ class Scratch(NamedTuple):
 
     Attributes:
         means: (W, beams, 2) the scan's averaged hits.
-        points: (W, beams, 5) those of them that are registered.
+        points: (W, blocks, 5, BLOCK) those of them that are registered.
         flat: (W, beams) which of them have a normal.
         numbers: (W, beams or N) integers.
-        chosen: (W, n, 5) the points that are matched.
+        chosen: (W, blocks, 5, BLOCK) the points that are matched.
+        work: For one block of points at a time.
         poses: (W, 2, 3) poses.
         outlines: Of the scans that are traced.
     """
@@ -59,6 +61,7 @@ class Scratch(NamedTuple):
     flat: NDArray[np.bool_]
     numbers: NDArray[np.int64]
     chosen: NDArray[np.float64]
+    work: Workspace
     poses: NDArray[np.float64]
     outlines: Outlines
 
@@ -69,10 +72,11 @@ def empty_scratch(
     """Allocate it."""
     return Scratch(
         np.zeros((worlds, beams, 2)),
-        np.zeros((worlds, beams, 5)),
+        np.stack([empty_blocks(beams)] * worlds),
         np.zeros((worlds, beams), np.bool_),
         np.zeros((worlds, max(beams, parameters.particles)), np.int64),
-        np.zeros((worlds, parameters.matcher.points, 5)),
+        np.stack([empty_blocks(parameters.matcher.points)] * worlds),
+        empty_workspaces(worlds),
         np.zeros((worlds, 2, 3)),
         empty_outlines(worlds, rows, beams, max_range, resolution),
     )

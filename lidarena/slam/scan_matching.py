@@ -12,16 +12,31 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.slam.likelihood_field import (
-    FULL,
-    ROUND_UP,
-    SECTORS,
-    SIGMA,
-    TILE,
-    TILE_BITS,
+from lidarena.slam.likelihood_field import FULL, SIGMA
+from lidarena.slam.point_blocks import (
+    AWAY_X,
+    AWAY_Y,
+    BLOCK,
+    CELLS,
+    FACING,
+    FIT,
+    FIT_X,
+    FIT_Y,
+    LEVER,
+    NEXT,
+    NORMAL_X,
+    NORMAL_Y,
+    PULL,
+    ROW,
+    ROWS,
+    WALL_X,
+    WALL_Y,
+    U,
+    V,
     facing,
-    facing_mask,
-    field_at,
+    gather_around,
+    gather_middle,
+    locate,
 )
 from lidarena.slam.symmetric import Symmetric, Vector, determinant, inverse, times
 from lidarena.world.kernels import inlined, leaf
@@ -53,6 +68,9 @@ def match(
     origin: NDArray[np.float64],
     resolution: float,
     points: NDArray[np.float64],
+    count: int,
+    reals: NDArray[np.float64],
+    integers: NDArray[np.int32],
     parameters: MatcherParameters,
     prior: NDArray[np.float64],
     information: Symmetric,
@@ -68,17 +86,20 @@ def match(
         table: (A, B) the particle's table of them.
         origin: (2,) its lower-left corner [m].
         resolution: [m].
-        points: (n, 5) the points to match, as ``scan_points.extract_points`` gives them.
+        points: (blocks, 5, BLOCK) the points to match, as ``scan_points.extract_points`` gives them.
+        count: How many.
+        reals: Work space, see ``point_blocks.Workspace``.
+        integers: Work space.
         parameters: Settings.
         prior: (3,) x̄, the pose that the odometry predicts.
         information: Ω, inverse covariance of the prior.
         pose: (3,) starting value; overwritten by the result.
     """
-    cells, names = tiles.reshape(-1), table.reshape(-1)
+    cells = tiles.reshape(-1)
     missed = quadratic = 0.0
     posterior = information
     for _ in range(parameters.iterations):
-        missed, hessian, gradient = _linearise(cells, names, table, origin[0], origin[1], resolution, points, pose)
+        missed, hessian, gradient = _linearise(cells, table, origin, resolution, points, count, reals, integers, pose)
         quadratic, posterior, slope = _add_prior(parameters.deviation, prior, information, pose, hessian, gradient)
         step = times(inverse(posterior), slope)
         for k in range(3):
@@ -96,86 +117,100 @@ def misfit(
     origin: NDArray[np.float64],
     resolution: float,
     points: NDArray[np.float64],
+    count: int,
+    reals: NDArray[np.float64],
+    integers: NDArray[np.int32],
     pose: NDArray[np.float64],
 ) -> float:
-    """Σ (1 − f) of ``points`` (n, 5) seen from ``pose`` (3,): how many are not on a known wall; see ``match``.
+    """Σ (1 − f) of ``count`` points seen from ``pose`` (3,): how many are not on a known wall; see ``match``.
 
-    Read off the cells that the points lie in, which is coarser than ``_linearise`` and five times as fast.
+    Read off the cells that the points lie in, which is coarser than ``_linearise`` and several times as fast.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    per_cell = 1.0 / resolution
-    start_u, start_v = (pose[0] - origin[0]) * per_cell, (pose[1] - origin[1]) * per_cell
-    turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
-    cells = tiles.reshape(-1)
-    missed = float(points.shape[0])
-    for i in range(points.shape[0]):
-        u = start_u + (cos * points[i, 0] - sin * points[i, 1]) * per_cell
-        v = start_v + (sin * points[i, 0] + cos * points[i, 1]) * per_cell
-        missed -= field_at(cells, table, math.floor(u), math.floor(v), np.int64(turn + points[i, 4]))
+    cells, names, numbers = tiles.reshape(-1), table.reshape(-1), points.reshape(-1)
+    missed = float(count)
+    for block in range((count + BLOCK - 1) // BLOCK):
+        here = min(BLOCK, count - block * BLOCK)
+        locate(numbers, block, here, pose, cos, sin, origin, resolution, table, reals, integers)
+        gather_middle(cells, names, here, integers)
+        for i in range(np.uint64(here)):
+            missed -= facing(integers[i + CELLS], integers[i + FACING]) * (1.0 / FULL)
     return missed
 
 
 @leaf
 def _linearise(
     cells: NDArray[np.uint16],
-    names: NDArray[np.int32],
     table: NDArray[np.int32],
-    x0: float,
-    y0: float,
+    origin: NDArray[np.float64],
     resolution: float,
     points: NDArray[np.float64],
+    count: int,
+    reals: NDArray[np.float64],
+    integers: NDArray[np.int32],
     pose: NDArray[np.float64],
 ) -> tuple[float, Symmetric, Vector]:
-    """Σ (1 − f) of the points seen from ``pose`` (3,), and the Welsch-weighted normal equations; see ``match``.
-
-    Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous,
-    where a bilinear one jumps from cell to cell and keeps Gauss-Newton from settling. Flat, unsigned indices spare the
-    tests for negative ones: ``cells`` and ``names`` are the tiles and their table in one row each.
-    """
+    """Σ (1 − f) of the points seen from ``pose`` (3,), and the Welsch-weighted normal equations; see ``match``."""
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    per_cell = 1.0 / resolution
-    start_u, start_v = (pose[0] - x0) * per_cell, (pose[1] - y0) * per_cell
-    turn = pose[2] * (SECTORS / (2.0 * math.pi)) + ROUND_UP
-    tiles_across = table.shape[1]
-    end_u, end_v = float(tiles_across * TILE), float(table.shape[0] * TILE)
-    side = TILE + 2
-    hxx = hxy = hyy = hxt = hyt = htt = gx = gy = gt = missed = 0.0
-    for i in range(points.shape[0]):
-        px, py = cos * points[i, 0] - sin * points[i, 1], sin * points[i, 0] + cos * points[i, 1]
-        u, v = start_u + px * per_cell, start_v + py * per_cell
-        if not (u >= 0.0 and v >= 0.0 and u < end_u and v < end_v):
-            missed += 1.0
-            continue
-        c, r = np.int64(u), np.int64(v)
-        a, b = u - c - 0.5, v - r - 0.5  # from the cell's centre, ±½
-        allowed = facing_mask(np.int64(turn + points[i, 4]))
-        tile = np.int64(names[np.uint64((r >> TILE_BITS) * tiles_across + (c >> TILE_BITS))])
-        corner = tile * (side * side) + (r & (TILE - 1)) * side + (c & (TILE - 1))
-        low, low_slope = _spline(cells, corner, a, allowed)
-        mid, mid_slope = _spline(cells, corner + side, a, allowed)
-        high, high_slope = _spline(cells, corner + 2 * side, a, allowed)
-        before, at, after = 0.5 * (0.5 - b) ** 2, 0.75 - b * b, 0.5 * (0.5 + b) ** 2
-        f = (before * low + at * mid + after * high) * (1.0 / FULL)
-        missed += 1.0 - f
-        nx, ny = cos * points[i, 2] - sin * points[i, 3], sin * points[i, 2] + cos * points[i, 3]
-        nt = ny * px - nx * py
-        pull = (before * low_slope + at * mid_slope + after * high_slope) * nx
-        pull += ((b - 0.5) * low - 2.0 * b * mid + (b + 0.5) * high) * ny
-        hxx, hxy, hyy = hxx + f * nx * nx, hxy + f * nx * ny, hyy + f * ny * ny
-        hxt, hyt, htt = hxt + f * nx * nt, hyt + f * ny * nt, htt + f * nt * nt
-        gx, gy, gt = gx + pull * nx, gy + pull * ny, gt + pull * nt
+    names, numbers = table.reshape(-1), points.reshape(-1)
+    hxx = hxy = hyy = hxt = hyt = htt = gx = gy = gt = 0.0
+    missed = float(count)
+    for block in range((count + BLOCK - 1) // BLOCK):
+        here = min(BLOCK, count - block * BLOCK)
+        locate(numbers, block, here, pose, cos, sin, origin, resolution, table, reals, integers)
+        gather_around(cells, names, here, integers)
+        _fit(numbers, block, here, cos, sin, reals, integers)
+        for i in range(np.uint64(here)):  # by itself, since sums must be added in order
+            f, fx, fy, pull = reals[i + FIT], reals[i + FIT_X], reals[i + FIT_Y], reals[i + PULL]
+            nx, ny, nt = reals[i + WALL_X], reals[i + WALL_Y], reals[i + LEVER]
+            missed -= f
+            hxx, hxy, hyy = hxx + fx * nx, hxy + fx * ny, hyy + fy * ny
+            hxt, hyt, htt = hxt + fx * nt, hyt + fy * nt, htt + f * nt * nt
+            gx, gy, gt = gx + pull * nx, gy + pull * ny, gt + pull * nt
     # a spline over cells widens a Gaussian by a quarter cell²
-    scale = (SIGMA * SIGMA + 0.25 * resolution * resolution) * per_cell / FULL
+    scale = (SIGMA * SIGMA + 0.25 * resolution * resolution) / (resolution * FULL)
     return missed, (hxx, hxy, hxt, hyy, hyt, htt), (scale * gx, scale * gy, scale * gt)
 
 
+@leaf
+def _fit(
+    points: NDArray[np.float64],
+    block: int,
+    count: int,
+    cos: float,
+    sin: float,
+    reals: NDArray[np.float64],
+    integers: NDArray[np.int32],
+) -> None:
+    """Field, slope along the normal, normal and its lever of a block's points, from the cells around them.
+
+    Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous,
+    where a bilinear one jumps from cell to cell and keeps Gauss-Newton from settling.
+    """
+    base = np.uint64(block) * ROWS
+    for i in range(np.uint64(count)):
+        allowed, k = integers[i + FACING], i + CELLS
+        a = reals[i + U] - np.int32(reals[i + U]) - 0.5  # from the cell's centre, ±½
+        b = reals[i + V] - np.int32(reals[i + V]) - 0.5
+        low, low_slope = _spline(integers, k, a, allowed)
+        mid, mid_slope = _spline(integers, k + ROW, a, allowed)
+        high, high_slope = _spline(integers, k + ROW + ROW, a, allowed)
+        before, at, after = 0.5 * (0.5 - b) ** 2, 0.75 - b * b, 0.5 * (0.5 + b) ** 2
+        f = (before * low + at * mid + after * high) * (1.0 / FULL)
+        nx = cos * points[base + i + NORMAL_X] - sin * points[base + i + NORMAL_Y]
+        ny = sin * points[base + i + NORMAL_X] + cos * points[base + i + NORMAL_Y]
+        pull = (before * low_slope + at * mid_slope + after * high_slope) * nx
+        pull += ((b - 0.5) * low - 2.0 * b * mid + (b + 0.5) * high) * ny
+        reals[i + FIT], reals[i + FIT_X], reals[i + FIT_Y], reals[i + PULL] = f, f * nx, f * ny, pull
+        reals[i + WALL_X], reals[i + WALL_Y] = nx, ny
+        reals[i + LEVER] = ny * reals[i + AWAY_X] - nx * reals[i + AWAY_Y]
+
+
 @inlined
-def _spline(cells: NDArray[np.uint16], first: int, a: float, allowed: int) -> tuple[float, float]:
-    """Quadratic B-spline through three cells from ``first`` on, at ``a`` ∈ ±½ from the middle; and its slope."""
-    k, one, two = np.uint64(first), np.uint64(1), np.uint64(2)
-    f0 = facing(np.int64(cells[k]), allowed)
-    f1 = facing(np.int64(cells[k + one]), allowed)
-    f2 = facing(np.int64(cells[k + two]), allowed)
+def _spline(integers: NDArray[np.int32], first: int, a: float, allowed: int) -> tuple[float, float]:
+    """Quadratic B-spline through three neighbouring cells, at ``a`` ∈ ±½ from the middle; and its slope."""
+    f0, f1 = facing(integers[first], allowed), facing(integers[first + NEXT], allowed)
+    f2 = facing(integers[first + NEXT + NEXT], allowed)
     value = 0.5 * (0.5 - a) ** 2 * f0 + (0.75 - a * a) * f1 + 0.5 * (0.5 + a) ** 2 * f2
     return value, (a - 0.5) * f0 - 2.0 * a * f1 + (a + 0.5) * f2
 

@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.likelihood_field import SECTORS
+from lidarena.slam.point_blocks import BLOCK
 from lidarena.world.kernels import leaf
 
 SPACING = 0.05
@@ -40,16 +41,18 @@ def extract_points(
         stride: Every how manyth from there on; the normals come from all.
         means: (beams, 2) work space, the averaged points.
         surface: (beams,) work space, number of the unbroken surface that each lies on.
-        points: (beams, 5) output in the sensor's frame: x, y [m], unit normal towards the sensor (where ``flat`` is
-            False it only points back along the beam), and the normal's direction in sectors
+        points: (blocks, 5, BLOCK) output in the sensor's frame: x, y [m], unit normal towards the sensor (where
+            ``flat`` is False it only points back along the beam), and the normal's direction in sectors
             (``likelihood_field.SECTORS`` to the turn).
         flat: (beams,) output, whether the normal was fitted.
     """
     total = _average_hits(scan, directions, max_range, means, surface)
     count = 0
     for i in range(first, total, stride):
-        flat[count] = _fit_normal(i, total, means, surface, points[count])
-        points[count, 4] = math.atan2(points[count, 3], points[count, 2]) * (SECTORS / (2.0 * math.pi))
+        block, lane = count // BLOCK, count % BLOCK
+        point = points[block, :, lane]
+        flat[count] = _fit_normal(i, total, means, surface, point)
+        point[4] = math.atan2(point[3], point[2]) * (SECTORS / (2.0 * math.pi))
         count += 1
     return count
 

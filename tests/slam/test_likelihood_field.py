@@ -11,31 +11,24 @@ from lidarena.slam.likelihood_field import (
     FULL,
     SECTORS,
     SIGMA,
-    TILE,
     Fields,
     clear_fields,
     copy_field,
     empty_fields,
-    field_at,
-    register_points,
 )
+from lidarena.slam.point_blocks import (
+    CELLS,
+    FACING,
+    as_blocks,
+    empty_workspaces,
+    facing,
+    gather_middle,
+    locate,
+)
+from lidarena.slam.registration import register_points
+from tests.slam.dense_field import dense
 
 ORIGIN, POSE = np.zeros(2), np.zeros(3)
-
-
-def dense(fields: Fields, particle: int) -> np.ndarray:
-    """A particle's field as one array, and the rims checked against it."""
-    a_count, b_count = fields.table.shape[2:]
-    whole = np.zeros((a_count * TILE + 2, b_count * TILE + 2), np.uint16)
-    for a in range(a_count):
-        for b in range(b_count):
-            tile = fields.tiles[0, fields.table[0, particle, a, b]]
-            whole[a * TILE + 1 : (a + 1) * TILE + 1, b * TILE + 1 : (b + 1) * TILE + 1] = tile[1:-1, 1:-1]
-    for a in range(a_count):
-        for b in range(b_count):
-            tile = fields.tiles[0, fields.table[0, particle, a, b]]
-            assert np.array_equal(tile, whole[a * TILE : (a + 1) * TILE + 2, b * TILE : (b + 1) * TILE + 2])
-    return whole[1:-1, 1:-1]
 
 
 def nearest_eighth(value: float) -> float:
@@ -56,7 +49,20 @@ def stamp_oracle(whole: np.ndarray, x: float, y: float, sector: int) -> None:
 
 def point(x: float, y: float, sector: int) -> np.ndarray:
     angle = sector * 2 * math.pi / SECTORS
-    return np.array([[x, y, math.cos(angle), math.sin(angle), float(sector)]])
+    return as_blocks(np.array([[x, y, math.cos(angle), math.sin(angle), float(sector)]]))
+
+
+def register(fields: Fields, particle: int, x: float, y: float, sector: int) -> None:
+    work = empty_workspaces(1)
+    register_points(fields, 0, particle, POSE, ORIGIN, 0.05, point(x, y, sector), 1, work.reals[0], work.integers[0])
+
+
+def seen_at(fields: Fields, x: float, y: float, sector: int) -> float:
+    """The field's value in the cell at (x, y), of walls that face ``sector``."""
+    work, table = empty_workspaces(1), fields.table[0, 0]
+    locate(point(x, y, sector).reshape(-1), 0, 1, POSE, 1.0, 0.0, ORIGIN, 0.05, table, work.reals[0], work.integers[0])
+    gather_middle(fields.tiles[0].reshape(-1), table.reshape(-1), 1, work.integers[0])
+    return facing(work.integers[0, CELLS], work.integers[0, FACING]) / FULL
 
 
 @settings(max_examples=40, deadline=None)
@@ -70,19 +76,19 @@ def test_tiles_hold_what_one_array_would(stamps: list[tuple[float, float, int]])
         known = whole[row, column] >> 4 if min(apart, 16 - apart) <= 4 else 0
         if known / FULL < 0.75:
             stamp_oracle(whole, x, y, sector)
-        register_points(fields, 0, 0, POSE, ORIGIN, 0.05, point(x, y, sector))
+        register(fields, 0, x, y, sector)
     assert np.array_equal(dense(fields, 0), whole)
     assert not dense(fields, 1).any()
 
 
 def test_copies_share_tiles_until_one_writes() -> None:
     fields = empty_fields(1, 3, 48, 48)
-    register_points(fields, 0, 0, POSE, ORIGIN, 0.05, point(1.0, 1.0, 0))
+    register(fields, 0, 1.0, 1.0, 0)
     copy_field(fields, 0, 0, 1)
     before = fields.free_count[0]
     assert np.array_equal(dense(fields, 0), dense(fields, 1))
     original = dense(fields, 0).copy()
-    register_points(fields, 0, 1, POSE, ORIGIN, 0.05, point(1.2, 1.0, 0))
+    register(fields, 1, 1.2, 1.0, 0)
     assert np.array_equal(dense(fields, 0), original)
     assert not np.array_equal(dense(fields, 1), original)
     assert fields.free_count[0] < before
@@ -96,7 +102,7 @@ def test_references_count_the_tables_that_name_a_tile() -> None:
     fields = empty_fields(1, 5, 64, 64)
     for _ in range(60):
         x, y = rng.uniform(0.2, 3.0, 2)
-        register_points(fields, 0, int(rng.integers(5)), POSE, ORIGIN, 0.05, point(x, y, int(rng.integers(16))))
+        register(fields, int(rng.integers(5)), x, y, int(rng.integers(16)))
         copy_field(fields, 0, int(rng.integers(5)), int(rng.integers(5)))
     named = np.bincount(fields.table[0].ravel(), minlength=fields.references.shape[1])
     assert np.array_equal(named[1:], fields.references[0, 1:])
@@ -107,9 +113,8 @@ def test_references_count_the_tables_that_name_a_tile() -> None:
 
 def test_a_wall_is_invisible_from_behind() -> None:
     fields = empty_fields(1, 1, 32, 32)
-    register_points(fields, 0, 0, POSE, ORIGIN, 0.05, point(0.775, 0.775, 4))
-    cells, table = fields.tiles[0].reshape(-1), fields.table[0, 0]
-    assert field_at(cells, table, 15, 15, 4) == pytest.approx(1.0, abs=5e-3)
-    assert field_at(cells, table, 15, 15, 6) > 0.9
-    assert field_at(cells, table, 15, 15, 12) == 0.0
-    assert field_at(cells, table, -3, 15, 4) == field_at(cells, table, 400, 15, 4) == 0.0
+    register(fields, 0, 0.775, 0.775, 4)
+    assert seen_at(fields, 0.775, 0.775, 4) == pytest.approx(1.0, abs=5e-3)
+    assert seen_at(fields, 0.775, 0.775, 6) > 0.9
+    assert seen_at(fields, 0.775, 0.775, 12) == 0.0
+    assert seen_at(fields, -0.1, 0.775, 4) == seen_at(fields, 20.0, 0.775, 4) == 0.0

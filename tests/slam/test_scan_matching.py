@@ -5,12 +5,15 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.slam.likelihood_field import empty_fields, register_points
-from lidarena.slam.scan_matching import MatcherParameters, match, misfit
+from lidarena.slam.likelihood_field import FULL, SIGMA, empty_fields
+from lidarena.slam.point_blocks import as_blocks, empty_blocks, empty_workspaces
+from lidarena.slam.registration import register_points
+from lidarena.slam.scan_matching import MatcherParameters, _linearise, match, misfit
 from lidarena.slam.scan_points import extract_points
 from lidarena.slam.symmetric import Symmetric, determinant, inverse, rotated, times
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar
+from tests.slam.dense_field import dense
 
 ROOM = Floorplan.from_shapes(
     "room",
@@ -19,6 +22,7 @@ ROOM = Floorplan.from_shapes(
     start=(1.2, 1.2, 0.3),
 )
 TRUE = np.array(ROOM.start)
+REALS, INTEGERS = (rows[0] for rows in empty_workspaces(1))
 
 
 def scan_of(plan: Floorplan, pose: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -30,10 +34,10 @@ def scan_of(plan: Floorplan, pose: np.ndarray, noise: float = 0.0) -> tuple[np.n
 
 
 def points_of(scan: np.ndarray, directions: np.ndarray, first: int = 0, stride: int = 1) -> tuple:
-    points, flat = np.zeros((360, 5)), np.zeros(360, np.bool_)
+    points, flat = empty_blocks(360), np.zeros(360, np.bool_)
     means, surface = np.zeros((360, 2)), np.zeros(360, np.int64)
     count = extract_points(scan, directions, 3.5, first, stride, means, surface, points, flat)
-    return points[:count], flat[:count]
+    return points.transpose(0, 2, 1).reshape(-1, 5)[:count], flat[:count]
 
 
 def packed(m: np.ndarray) -> Symmetric:
@@ -49,9 +53,10 @@ def matched(start: np.ndarray, information: np.ndarray, plan: Floorplan = ROOM, 
     points, flat = scan_of(plan, true, 0.01)
     fields = empty_fields(1, 1, 112, 512)
     origin = np.array([-1.0, -1.0])
-    register_points(fields, 0, 0, true, origin, 0.05, points)
+    register_points(fields, 0, 0, true, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
     pose = start.copy()
-    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, points[flat], MatcherParameters(iterations=25))
+    chosen = (as_blocks(points[flat]), int(flat.sum()), REALS, INTEGERS)
+    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, *chosen, MatcherParameters(iterations=25))
     value, posterior = match(*arguments, start.copy(), packed(information), pose)
     return pose, unpacked(posterior), value
 
@@ -63,6 +68,51 @@ def test_a_displaced_pose_is_pulled_back(dx: float, dy: float, dt: float) -> Non
     assert pose[:2] == pytest.approx(TRUE[:2], abs=0.012)
     assert pose[2] == pytest.approx(TRUE[2], abs=0.01)
     assert np.linalg.eigvalsh(posterior).min() > 0
+
+
+def linearise_oracle(field: np.ndarray, points: np.ndarray, pose: np.ndarray) -> tuple[float, np.ndarray, np.ndarray]:
+    """Point by point in plain Python: Σ (1 − f), its normal equations, on the field as one array with a rim of one."""
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    missed, hessian, gradient = float(len(points)), np.zeros((3, 3)), np.zeros(3)
+    for x, y, normal_x, normal_y, sector in points:
+        px, py = cos * x - sin * y, sin * x + cos * y
+        u, v = (pose[0] + 1.0 + px) / 0.05, (pose[1] + 1.0 + py) / 0.05
+        c, r = math.floor(u), math.floor(v)
+        a, b = u - c - 0.5, v - r - 0.5
+        window = field[r : r + 3, c : c + 3].astype(np.int64)
+        apart = ((window & 15) - round(sector + pose[2] * 16 / (2 * math.pi))) % 16
+        values = np.where(np.minimum(apart, 16 - apart) <= 4, window >> 4, 0) / FULL
+        across, across_slope = spline_weights(a)
+        along, along_slope = spline_weights(b)
+        fit = along @ values @ across
+        slope = np.array([along @ values @ across_slope, along_slope @ values @ across]) / 0.05
+        normal = np.array([cos * normal_x - sin * normal_y, sin * normal_x + cos * normal_y])
+        row = np.array([normal[0], normal[1], normal[1] * px - normal[0] * py])
+        missed -= fit
+        hessian += fit * np.outer(row, row)
+        gradient += (SIGMA**2 + 0.25 * 0.05**2) * (slope @ normal) * row
+    return missed, hessian, gradient
+
+
+def spline_weights(a: float) -> tuple[np.ndarray, np.ndarray]:
+    weights = np.array([0.5 * (0.5 - a) ** 2, 0.75 - a * a, 0.5 * (0.5 + a) ** 2])
+    return weights, np.array([a - 0.5, -2.0 * a, a + 0.5])
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(-0.1, 0.1), st.floats(-0.1, 0.1), st.floats(-0.2, 0.2), st.integers(1, 120))
+def test_blocks_of_points_are_linearised_as_one_by_one(dx: float, dy: float, dt: float, most: int) -> None:
+    points, _ = scan_of(ROOM, TRUE, 0.01)
+    points = points[:most]
+    fields, origin = empty_fields(1, 1, 112, 512), np.array([-1.0, -1.0])
+    register_points(fields, 0, 0, TRUE, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
+    pose = TRUE + np.array([dx, dy, dt])
+    chosen = (as_blocks(points), len(points), REALS, INTEGERS)
+    missed, hessian, gradient = _linearise(fields.tiles[0].reshape(-1), fields.table[0, 0], origin, 0.05, *chosen, pose)
+    expected = linearise_oracle(np.pad(dense(fields, 0), 1), points, pose)
+    assert missed == pytest.approx(expected[0], abs=1e-9)
+    assert unpacked(hessian) == pytest.approx(expected[1], abs=1e-9)
+    assert gradient == pytest.approx(expected[2], abs=1e-9)
 
 
 def test_the_likelihood_prefers_the_prior_that_agrees_with_the_map() -> None:
@@ -119,8 +169,9 @@ def test_every_second_point_is_one_of_all() -> None:
 def test_the_misfit_is_least_where_the_scan_was_taken(away: float, direction: float) -> None:
     points, _ = scan_of(ROOM, TRUE)
     fields, origin = empty_fields(1, 1, 112, 512), np.array([-1.0, -1.0])
-    register_points(fields, 0, 0, TRUE, origin, 0.05, points)
-    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, points)
+    register_points(fields, 0, 0, TRUE, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
+    chosen = (as_blocks(points), len(points), REALS, INTEGERS)
+    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, *chosen)
     beside = TRUE + away * np.array([math.cos(direction), math.sin(direction), 0.0])
     assert 0.0 <= misfit(*arguments, TRUE) < misfit(*arguments, beside) <= len(points)
 
