@@ -29,29 +29,29 @@ from lidarena.world.refusals import ConfigError
 Arrays = dict[str, NDArray[Any]]
 
 KEPT = 2
-"""Checkpoints that stay in a run folder: the newest, and one before it."""
+"""Checkpoints that stay in the folder of a training that goes on: the newest, and one before it."""
 
 _VERSION = 2
 _FILES = ("model.safetensors", "worlds.npz", "trainer.npz", "trainer.json")
 _NORMALIZER = ("mean", "var", "count")
 
 
-def save(run_folder: Path, model: PPO, seconds: float, small: bool = False) -> Path:
-    """Write a checkpoint of a training between two updates, and remove all but the last `KEPT`.
+def save(run_folder: Path, model: PPO, seconds: float, keep: int = KEPT) -> Path:
+    """Write a checkpoint of a training between two updates, and remove all but the last ``keep``.
 
     Args:
         run_folder: Of the training.
         model: PPO on a `BatchVecEnv`.
         seconds: That the training has taken so far.
-        small: Whether to compress it, which takes seconds and makes it a third as large.
+        keep: How many checkpoints stay.
 
     Returns:
         The folder of the checkpoint, ``checkpoints/step_…``; it appears whole or not at all.
     """
     folder = run_folder / "checkpoints" / f"step_{model.num_timesteps:013d}"
     if not folder.exists():
-        write_folder(folder, lambda temporary: _fill(temporary, model, seconds, small))
-    for old in _folders(run_folder)[:-KEPT]:
+        write_folder(folder, lambda temporary: _fill(temporary, model, seconds))
+    for old in _folders(run_folder)[:-keep]:
         shutil.rmtree(old)
     return folder
 
@@ -114,7 +114,7 @@ def _folders(run_folder: Path) -> list[Path]:
     return sorted(path for path in (run_folder / "checkpoints").glob("step_*") if path.is_dir())
 
 
-def _fill(folder: Path, model: PPO, seconds: float, small: bool) -> None:
+def _fill(folder: Path, model: PPO, seconds: float) -> None:
     weights = {f"policy.{name}": tensor for name, tensor in weights_of(model.policy).items()}
     moments = {
         f"optimizer.{index}.{name}": tensor
@@ -124,8 +124,8 @@ def _fill(folder: Path, model: PPO, seconds: float, small: bool) -> None:
     tensors = {name: tensor.detach().cpu().contiguous() for name, tensor in (weights | moments).items()}
     (folder / "model.safetensors").write_bytes(safetensors.torch.save(tensors))
     worlds = batch_of(model).env.unwrapped
-    _save_arrays(folder / "worlds.npz", worlds.get_state() if isinstance(worlds, Restorable) else {}, small)
-    _save_arrays(folder / "trainer.npz", _trainer_arrays(model), small)
+    _save_arrays(folder / "worlds.npz", worlds.get_state() if isinstance(worlds, Restorable) else {})
+    _save_arrays(folder / "trainer.npz", _trainer_arrays(model))
     about = {
         "version": _VERSION,
         "num_timesteps": model.num_timesteps,
@@ -209,15 +209,11 @@ def _restore_generators(arrays: Arrays, about: dict[str, Any], model: PPO) -> No
         torch.cuda.set_rng_state(torch.from_numpy(arrays["cuda_random"]), model.device)
 
 
-def _save_arrays(path: Path, arrays: Arrays, small: bool) -> None:
+def _save_arrays(path: Path, arrays: Arrays) -> None:
     for key, value in arrays.items():
         if np.asarray(value).dtype.hasobject:
             raise TypeError(f"the state {key!r} holds Python objects, which only a pickle could keep")
-    # np.savez_compressed takes ten times as long, which is felt between two updates
-    with zipfile.ZipFile(path, "w", zipfile.ZIP_DEFLATED if small else zipfile.ZIP_STORED, compresslevel=1) as archive:
-        for key, value in arrays.items():
-            with archive.open(f"{key}.npy", "w", force_zip64=True) as stream:
-                np.lib.format.write_array(stream, np.asarray(value), allow_pickle=False)
+    np.savez(path, allow_pickle=False, **arrays)  # compressing takes ten times as long, which is felt between updates
 
 
 def _load_arrays(path: Path) -> Arrays:

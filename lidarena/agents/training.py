@@ -104,7 +104,10 @@ def make_model(config: TrainingConfig, env: VecEnv) -> PPO:
     if config.device == "cuda" and not torch.cuda.is_available():
         raise ConfigError("'device' is 'cuda', but PyTorch finds no CUDA device here; allowed here: cpu")
     settings = {name: _schedule(value) for name, value in config.ppo}
-    network: dict[str, Any] = {"activation_fn": ACTIVATIONS[config.policy.activation]}
+    network: dict[str, Any] = {
+        "activation_fn": ACTIVATIONS[config.policy.activation],
+        "optimizer_kwargs": {"eps": 1e-5, "fused": True},  # Stable-Baselines3's ε; one kernel in place of a dozen
+    }
     if config.policy.net_arch is not None:
         network["net_arch"] = config.policy.net_arch
     with warnings.catch_warnings():
@@ -158,9 +161,9 @@ class _Run:
         return _summary(values)
 
     def save(self, last: bool) -> None:
-        """Write policy and checkpoint, the last one small; the old ones stay until the new ones are whole."""
+        """Write policy and checkpoint; the old ones stay until the new ones are whole."""
         self.save_policy()
-        checkpoint.save(self.folder, self.model, self.seconds, small=last)
+        checkpoint.save(self.folder, self.model, self.seconds, keep=1 if last else checkpoint.KEPT)
         self._saved_at = self.model.num_timesteps
 
     def save_policy(self) -> None:
