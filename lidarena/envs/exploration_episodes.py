@@ -18,6 +18,8 @@ from lidarena.envs.exploration_picture import PathRecorder
 
 CRASH_REWARD = -100.0
 """The paper's r_crashed."""
+_GAIN = 0.001
+"""Share of the map that counts as a gain where patience is limited."""
 Info = dict[str, Any]
 
 
@@ -51,6 +53,7 @@ class ExplorationEpisodes:
         self._steps = np.zeros(worlds, np.int64)
         self._previous = np.zeros((worlds, parts))
         self._completeness = np.zeros(worlds)
+        self._gained, self._gained_at = np.zeros(worlds), np.zeros(worlds, np.int64)
         self._terms = {name: np.zeros(worlds) for name in (options.reward, "collision")}
         self._compiled = False
 
@@ -59,7 +62,8 @@ class ExplorationEpisodes:
         with nullcontext() if self._compiled else announced_compilation():
             for world in worlds:
                 self.core.reset_world(world, generators[world])
-                self._steps[world] = 0
+                self._steps[world] = self._gained_at[world] = 0
+                self._gained[world] = 0.0
                 self._previous[world] = 0.0
                 if self.recorder is not None:
                     self.recorder.begin(world, self.core)
@@ -83,11 +87,20 @@ class ExplorationEpisodes:
         terminated = self.core.sensors.collision.copy()
         if self.options.stop_at is not None:
             terminated |= self._completeness >= self.options.stop_at
-        limit = self.options.max_episode_steps
-        truncated = self._steps >= limit if limit is not None else np.zeros_like(terminated)
         if self.recorder is not None:
             self.recorder.record(self.core)
-        return rewards, terminated, truncated
+        return rewards, terminated, self._truncated()
+
+    def _truncated(self) -> NDArray[np.bool_]:
+        """Which worlds have run out of steps, or of patience."""
+        gain = self._completeness >= self._gained + _GAIN
+        self._gained[gain], self._gained_at[gain] = self._completeness[gain], self._steps[gain]
+        truncated = np.zeros(self.core.worlds, np.bool_)
+        if self.options.max_episode_steps is not None:
+            truncated |= self._steps >= self.options.max_episode_steps
+        if self.options.patience is not None:
+            truncated |= (self._steps - self._gained_at) * self.options.decision_period >= self.options.patience
+        return truncated
 
     def _remember(self, actions: NDArray[np.float64]) -> None:
         if self.options.action == "discrete":
@@ -141,12 +154,14 @@ class ExplorationEpisodes:
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""
         own = {"steps": self._steps, "previous": self._previous, "completeness": self._completeness}
+        own |= {"gained": self._gained, "gained_at": self._gained_at}
         return own | self.core.arrays()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of other episodes with the same options."""
         self._steps[:], self._previous[:] = saved["steps"], saved["previous"]
         self._completeness = saved["completeness"].copy()
+        self._gained[:], self._gained_at[:] = saved["gained"], saved["gained_at"]
         self.core.load_arrays(saved)
 
 

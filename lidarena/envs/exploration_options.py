@@ -47,6 +47,7 @@ class ExplorationOptions:
         max_episode_steps: Steps after which an episode is truncated; None never.
         start: (x, y, theta) in the map's frame, ``"random"``, or None for the map's own.
         stop_at: Completeness that ends an episode as done; None never.
+        patience: Time without 0.1% more completeness after which an episode is truncated [s]; None never.
         expose_truth: Give ``info["truth"]``, for evaluation.
         render_mode: None or ``"rgb_array"``.
         eta: η of the uncertainty reward [m^(4/3) rad^(2/3)].
@@ -64,6 +65,7 @@ class ExplorationOptions:
     max_episode_steps: int | None = 1000
     start: Pose | str | None = None
     stop_at: float | None = 0.995
+    patience: float | None = None
     expose_truth: bool = False
     render_mode: str | None = None
     eta: float = ETA
@@ -94,6 +96,8 @@ class ExplorationOptions:
             _check_whole("max_episode_steps", self.max_episode_steps)
         if self.stop_at is not None:
             _check_range("stop_at", self.stop_at, 0.0, 1.0)
+        if self.patience is not None:
+            _check_range("patience", self.patience, 0.01, 1e9)
         _check_whole("particles", self.particles)
         if not isinstance(self.expose_truth, bool):
             raise ConfigError(f"expose_truth = {self.expose_truth!r} must be true or false")

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines import Policy
+from lidarena.evaluation.map_quality import map_iou
 from lidarena.evaluation.participants import Env
 from lidarena.evaluation.statistics import geometric_mean
 
@@ -30,6 +31,8 @@ class Trace:
         origin: Lower-left corner of cell [0, 0], shape (2,) [m].
         edges: Walls of the floor plan as x1, y1, x2, y2, shape (E, 4) [m].
         circles: Pillars of the floor plan as x, y, radius, shape (C, 3) [m].
+        nodes: Nodes of the policy's own graph of the world, shape (V, 2) [m]; empty if it keeps none.
+        links: Which of them it has joined, shape (L, 2).
     """
 
     true: Floats
@@ -39,6 +42,8 @@ class Trace:
     origin: Floats
     edges: Floats
     circles: Floats
+    nodes: Floats = field(default_factory=lambda: np.empty((0, 2)))
+    links: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
 
 
 @dataclass(frozen=True)
@@ -113,8 +118,8 @@ def run_episode(
     if film and (terminated or truncated):
         film(env)
     ending = _ending(terminated, truncated, info)
-    trace = _trace(env, info, log) if keep_trace else None
-    return Episode(seed, log.measures(info, ending), ending, log.progress(), trace)
+    trace = _trace(env, policy, info, log) if keep_trace else None
+    return Episode(seed, log.measures(info, ending) | _map_quality(env, info), ending, log.progress(), trace)
 
 
 def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:
@@ -177,7 +182,15 @@ class _Log:
         return float(np.mean(np.hypot(away[:, 0], away[:, 1])))
 
 
-def _trace(env: Env, info: Mapping[str, Any], log: _Log) -> Trace:
+def _map_quality(env: Env, info: Mapping[str, Any]) -> dict[str, float]:
+    plan = getattr(env.unwrapped, "floorplan", None)
+    if plan is None or "map" not in info:
+        return {"map_iou": np.nan}
+    return {"map_iou": map_iou(plan, info["map"], info["origin"], info["resolution"])}
+
+
+def _trace(env: Env, policy: Policy, info: Mapping[str, Any], log: _Log) -> Trace:
+    graph = getattr(policy, "graph", None)
     plan = getattr(env.unwrapped, "floorplan", None)
     true, estimated = (np.array(log.poses[key]) for key in ("true", "estimated"))
     return Trace(
@@ -188,4 +201,6 @@ def _trace(env: Env, info: Mapping[str, Any], log: _Log) -> Trace:
         origin=np.array(info.get("origin", (0.0, 0.0)), dtype=np.float64),
         edges=np.array(plan.edges) if plan is not None else np.empty((0, 4)),
         circles=np.array(plan.circles) if plan is not None else np.empty((0, 3)),
+        nodes=np.array(graph.positions, dtype=np.float64).reshape(-1, 2) if graph is not None else np.empty((0, 2)),
+        links=np.array(sorted(graph.edges if graph is not None else []), dtype=np.int64).reshape(-1, 2),
     )

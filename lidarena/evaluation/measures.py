@@ -46,6 +46,7 @@ MEASURES: tuple[Measure, ...] = (
     Measure("time", "Time", "s", 1, "s", "low", needs_coverage=True, main=True),
     Measure("d_optimality", "D-optimality", "10⁻³", 1000, better="low", needs_coverage=True, main=True),
     Measure("trajectory_error", "Pose error", "cm", 100, "m", "low", needs_coverage=True, main=True),
+    Measure("map_iou", "Map IoU", "%", 100, better="high", needs_coverage=True, main=True),
     Measure("odometry_error", "Odometry error", "cm", 100, "m"),
     Measure("entropy", "Entropy", "nat", 1, "nat"),
     Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat"),

@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-TRUE_COLOUR, ESTIMATE_COLOUR, WALL_COLOUR = "#0072B2", "#D55E00", "#7A5195"
+TRUE_COLOUR, ESTIMATE_COLOUR, WALL_COLOUR, GRAPH_COLOUR = "#0072B2", "#D55E00", "#7A5195", "#E69F00"
 LINES = (("#0072B2", "-"), ("#D55E00", "--"), ("#009E73", "-."), ("#CC79A7", ":"), ("#E69F00", "-"), ("#555555", "--"))
 """Colours that the colour-blind can tell apart (Okabe and Ito), and dashes for those who print in grey."""
 
@@ -100,7 +100,7 @@ def overview(cells: Sequence[Sequence[Cell]]) -> "Figure":
             if row is cells[-1]:
                 axes.set_xlabel("x (m)")
     figure.suptitle(f"First episode of each policy (seed {cells[0][0].episodes[0].seed})", fontsize=12)
-    _legend(figure, grid[0][0])
+    _legend(figure, *grid[0])
     return figure
 
 
@@ -169,6 +169,7 @@ def _trace(cell: Cell) -> Trace | None:
 
 def _draw_trace(axes: "Axes", trace: Trace, episode: Episode, box: tuple[float, float, float, float]) -> None:
     _draw_map(axes, trace)
+    _draw_graph(axes, trace)
     for path, colour, dashes, label in (
         (trace.true, TRUE_COLOUR, "-", "true path"),
         (trace.estimated, ESTIMATE_COLOUR, (0, (4, 2)), "path as SLAM believes it"),
@@ -190,6 +191,16 @@ def _draw_trace(axes: "Axes", trace: Trace, episode: Episode, box: tuple[float, 
     axes.set_aspect("equal")
     axes.set_xlim(box[0], box[1])
     axes.set_ylim(box[2], box[3])
+
+
+def _draw_graph(axes: "Axes", trace: Trace) -> None:
+    from matplotlib.collections import LineCollection
+
+    if len(trace.nodes):
+        joints = [(tuple(trace.nodes[i]), tuple(trace.nodes[j])) for i, j in trace.links]
+        axes.add_collection(LineCollection(joints, colors=GRAPH_COLOUR, linewidths=2.5, alpha=0.6, zorder=3))
+        style: dict[str, Any] = {"markersize": 6, "markeredgecolor": "white", "zorder": 3.5}
+        axes.plot(*trace.nodes.T, "o", color=GRAPH_COLOUR, label="topological graph", linestyle="", **style)
 
 
 def _draw_map(axes: "Axes", trace: Trace) -> None:
@@ -222,7 +233,7 @@ def _box(traces: Sequence[Trace]) -> tuple[float, float, float, float]:
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
-def _legend(figure: "Figure", axes: "Axes") -> None:
+def _legend(figure: "Figure", *panels: "Axes") -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -232,7 +243,8 @@ def _legend(figure: "Figure", axes: "Axes") -> None:
         Patch(facecolor="#222222", label="mapped as wall"),
         Line2D([], [], color=WALL_COLOUR, linewidth=0.9, label="true walls"),
     ]
-    lines = [handle for handle in axes.get_legend_handles_labels()[0] if handle.get_label() != "end"]
+    drawn = {handle.get_label(): handle for axes in panels for handle in axes.get_legend_handles_labels()[0]}
+    lines = [handle for label, handle in drawn.items() if label != "end"]
     ends = [_marker("black", "s", "end"), _marker("#CC0000", "X", "collision")]
     width = figure.get_size_inches()[0]
     columns = 9 if width > 12 else 5 if width > 7.5 else 3

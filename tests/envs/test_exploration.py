@@ -208,3 +208,24 @@ def test_ppo_of_stable_baselines_takes_the_environment_as_it_is() -> None:
 
     model = PPO("MlpPolicy", gym.make("lidarena/Env1-v0"), n_steps=16, batch_size=16)
     model.learn(32)
+
+
+def test_patience_ends_an_episode_that_finds_nothing_new() -> None:
+    env = gym.make("lidarena/Env1-v0", patience=4.0, max_episode_steps=500)
+    env.reset(seed=0)
+    gains, completeness = [0], 0.0
+    for step in range(1, 500):
+        _, _, terminated, truncated, info = env.step(1)  # turning on the spot soon shows nothing new
+        if info["completeness"] >= completeness + 0.001:
+            completeness = info["completeness"]
+            gains.append(step)
+        if terminated or truncated:
+            break
+    assert truncated and not terminated
+    assert step == gains[-1] + 20
+
+
+@pytest.mark.parametrize("value", [0.0, -1.0, float("nan"), "long"])
+def test_absurd_patience_is_refused(value: object) -> None:
+    with pytest.raises(ConfigError, match="patience"):
+        gym.make("lidarena/Env1-v0", patience=value)

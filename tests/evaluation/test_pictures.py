@@ -1,5 +1,6 @@
 """Pictures exist, are not blank, and say what they should."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -101,3 +102,15 @@ def test_progress_has_a_panel_per_environment() -> None:
 )
 def test_captions(values: dict[str, float], text: str) -> None:
     assert caption(episode_of(0, values)) == text
+
+
+def test_a_graph_is_drawn_and_explained_wherever_a_policy_kept_one() -> None:
+    graph = replace(trace_of(), nodes=np.array([[1.0, 1.0], [2.0, 1.5], [3.0, 3.0]]), links=np.array([[0, 1], [1, 2]]))
+    plain, with_graph = cell_of("frontier"), cell_of("ealc")
+    with_graph = replace(with_graph, episodes=[replace(with_graph.episodes[0], trace=graph)])
+    figure = overview([[plain, with_graph]])
+    legend = [text.get_text() for text in figure.legends[0].get_texts()]
+    assert "topological graph" in legend and legend.count("true path") == 1
+    lines = {line.get_label(): line for line in figure.axes[1].lines}
+    assert np.array_equal(np.array(lines["topological graph"].get_xydata()), graph.nodes)
+    assert "topological graph" not in {line.get_label() for line in figure.axes[0].lines}

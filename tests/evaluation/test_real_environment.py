@@ -26,6 +26,14 @@ def test_everything_is_measured(policy: str) -> None:
     assert walked == pytest.approx(values["path_length"], rel=0.02, abs=0.01)
 
 
+def test_a_graph_reaches_the_trace() -> None:
+    trace = short_episode("ealc", seed=3).trace
+    assert trace is not None and trace.nodes.shape == (1, 2) and trace.links.shape == (0, 2)
+    assert np.hypot(*(trace.nodes[0] - trace.true[0])) < 0.2
+    plain = short_episode("random", seed=3).trace
+    assert plain is not None and plain.nodes.shape == (0, 2)
+
+
 def test_a_seed_fixes_an_episode() -> None:
     first, second = short_episode("random", 5), short_episode("random", 5)
     for one, other in ((first, second), (first, short_episode("random", 6))):
