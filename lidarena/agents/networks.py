@@ -15,6 +15,7 @@ from stable_baselines3.common.preprocessing import is_image_space
 from stable_baselines3.common.torch_layers import CombinedExtractor, FlattenExtractor, NatureCNN
 from torch import nn
 
+from lidarena.agents.candidate_policy import CandidatePolicy
 from lidarena.agents.training_config import Activation, Layers, PolicyClass, PolicyConfig
 from lidarena.agents.yaml_config import ConfigModel
 from lidarena.world.refusals import ConfigError, PolicyFileError
@@ -33,6 +34,7 @@ _CLASSES: dict[PolicyClass, type[ActorCriticPolicy]] = {
     "MlpPolicy": ActorCriticPolicy,
     "CnnPolicy": ActorCriticCnnPolicy,
     "MultiInputPolicy": MultiInputActorCriticPolicy,
+    "CandidatePolicy": CandidatePolicy,
 }
 
 _EXTRACTORS = (FlattenExtractor, NatureCNN, CombinedExtractor)
@@ -65,9 +67,16 @@ def class_for(config: PolicyConfig, observation_space: spaces.Space[Any]) -> Pol
     else:
         right = "CnnPolicy" if is_image_space(observation_space) else "MlpPolicy"
     wanted = config.class_name
+    if wanted == "CandidatePolicy" and isinstance(observation_space, spaces.Box) and len(observation_space.shape) == 2:
+        return wanted
     if wanted == "auto" or wanted == right or (wanted == "MlpPolicy" and right == "CnnPolicy"):
         return right if wanted == "auto" else wanted
     raise ConfigError(f"'policy.class' is {wanted!r}, but observations of {observation_space} need {right!r}")
+
+
+def policy_class(name: PolicyClass) -> type[ActorCriticPolicy]:
+    """Return the class of that name."""
+    return _CLASSES[name]
 
 
 def describe(network: ActorCriticPolicy) -> Architecture:

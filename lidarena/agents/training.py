@@ -17,9 +17,10 @@ from stable_baselines3.common.vec_env import VecEnv, VecNormalize
 from torch.distributions import Distribution
 
 from lidarena.agents import checkpoint, run_folder
+from lidarena.agents.goal_choice_env import register_goal_choice
 from lidarena.agents.interruption import StopRequest, TrainingStopped, stop_on_signal
 from lidarena.agents.learning_curve import LearningCurve
-from lidarena.agents.networks import ACTIVATIONS, all_finite, class_for, weights_of
+from lidarena.agents.networks import ACTIVATIONS, all_finite, class_for, policy_class, weights_of
 from lidarena.agents.policy_file import save_policy
 from lidarena.agents.progress import ProgressDisplay, show_progress
 from lidarena.agents.training_config import CONFIG_FILE, EnvironmentConfig, Linear, TrainingConfig
@@ -83,6 +84,7 @@ def make_batch(env: EnvironmentConfig, num_envs: int) -> BatchVecEnv:
         ConfigError: There is no such environment or keyword, or it has no batch of its own.
     """
     module, _, name = env.id.rpartition(":")
+    register_goal_choice()
     try:
         batch = gym.make_vec(env.id, num_envs=num_envs, vectorization_mode="vector_entry_point", **env.keywords)
     except ModuleNotFoundError:
@@ -113,7 +115,7 @@ def make_model(config: TrainingConfig, env: VecEnv) -> PPO:
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="You are trying to run PPO on the GPU")  # the user asked for it
         return PPO(
-            class_for(config.policy, env.observation_space),
+            policy_class(class_for(config.policy, env.observation_space)),
             env,
             policy_kwargs=network,
             seed=config.seed,

@@ -7,7 +7,7 @@ from pydantic import BeforeValidator, ConfigDict, Field, field_validator, model_
 
 from lidarena.agents.yaml_config import ConfigModel
 
-PolicyClass = Literal["MlpPolicy", "CnnPolicy", "MultiInputPolicy"]
+PolicyClass = Literal["MlpPolicy", "CnnPolicy", "MultiInputPolicy", "CandidatePolicy"]
 Activation = Literal["tanh", "relu", "leaky_relu", "elu", "silu", "gelu"]
 Width = Annotated[int, Field(ge=1, le=65_536)]
 Layers = Annotated[list[Width], Field(max_length=64)]
@@ -98,8 +98,9 @@ class PolicyConfig(ConfigModel):
     """The network.
 
     Attributes:
-        class_name: ``class`` in a file: one of Stable-Baselines3's policies, or ``auto``: ``MultiInputPolicy`` for dict
-            observations, ``CnnPolicy`` for images, ``MlpPolicy`` otherwise.
+        class_name: ``class`` in a file: one of Stable-Baselines3's policies, ``CandidatePolicy`` (one row a candidate,
+            see `candidate_policy`), or ``auto``: ``MultiInputPolicy`` for dict observations, ``CnnPolicy`` for images,
+            ``MlpPolicy`` otherwise.
         net_arch: Widths of the hidden layers, ``[64, 64]`` for actor and critic each, or ``{pi: […], vf: […]}``;
             Stable-Baselines3's default if left out.
         activation: Between the layers.

@@ -1,7 +1,7 @@
 """Frontier exploration: ROS's explore_lite on the SLAM map, driven with the environment's own actions."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from typing import Any
 
 import numpy as np
@@ -143,19 +143,25 @@ class FrontierPolicy:
             self.frontiers = self._search(terrain, size)
             if self._is_last(size) and self._is_exhausted(terrain):
                 return False
-            for frontier in self.frontiers:
-                for goal in self._goals(frontier, terrain):
-                    if self._ledger.is_given_up(goal):
-                        continue
-                    if self.driver.go(goal, terrain):
-                        self._ledger.pursue(goal, self._step)
-                        return True
-                    if self.driver.is_cornered:
-                        continue  # nothing can be said of this goal; any other that leads out of here is welcome
-                    if not self._ledger.fail(goal, math.dist(goal, self.driver.pose[:2]) < _BESIDE):
-                        self.driver.stop()
-                        return True  # turn on the spot and try again, rather than drive elsewhere and come back
+            if self._pursue(self.frontiers, terrain):
+                return True
         return self.driver.is_cornered and bool(self.frontiers)
+
+    def _pursue(self, frontiers: Sequence[Frontier], terrain: Terrain) -> bool:
+        """Set out for the first of some frontiers that can be driven to; whether there is one."""
+        for frontier in frontiers:
+            for goal in self._goals(frontier, terrain):
+                if self._ledger.is_given_up(goal):
+                    continue
+                if self.driver.go(goal, terrain):
+                    self._ledger.pursue(goal, self._step)
+                    return True
+                if self.driver.is_cornered:
+                    continue  # nothing can be said of this goal; any other that leads out of here is welcome
+                if not self._ledger.fail(goal, math.dist(goal, self.driver.pose[:2]) < _BESIDE):
+                    self.driver.stop()
+                    return True  # turn on the spot and try again, rather than drive elsewhere and come back
+        return False
 
     def _search(self, terrain: Terrain, size: float) -> list[Frontier]:
         """The frontiers of one pass, the best first."""

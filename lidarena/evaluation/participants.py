@@ -10,6 +10,7 @@ import gymnasium as gym
 
 import lidarena  # noqa: F401  registers the environments, also in a spawned worker
 from lidarena import baselines
+from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.baselines import Policy
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.world.refusals import ConfigError, suggest
@@ -48,6 +49,10 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
     try:
         if agent is None:
             return env, _make_untrained(entry, env)
+        if agent.env_id == GOAL_CHOICE_ID:
+            from lidarena.agents.goal_choice_agent import GoalChoiceAgent
+
+            return env, GoalChoiceAgent(env, agent)
         if agent.action_space != env.action_space:
             raise ConfigError(
                 f"policy {entry.title!r} was trained on actions of {agent.action_space}, "

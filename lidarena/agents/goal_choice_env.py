@@ -1,0 +1,152 @@
+"""The world in which the combined agent learns: every step chooses where to explore next, and the driver gets there."""
+
+from collections.abc import Callable, Mapping
+from functools import partial
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.vector import AsyncVectorEnv, AutoresetMode, VectorEnv
+from numpy.typing import NDArray
+
+from lidarena.baselines.frontier_features import CANDIDATES, FEATURES
+from lidarena.baselines.goal_choice import GoalChoicePolicy
+from lidarena.world.refusals import ConfigError
+
+GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
+_WEIGHTS = {"path": 0.05, "time": 0.01, "uncertainty": 0.02, "coverage": 5.0, "collision": 10.0}
+_CERTAIN = 1e-4
+"""D-optimality that costs nothing."""
+_LARGEST = 30.0
+
+
+class _ChoiceNeeded(Exception):  # noqa: N818  not an error: it carries the question out of the policy
+    def __init__(self, features: NDArray[np.float32]) -> None:
+        self.features = features
+
+
+class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
+    """Choose where to explore next.
+
+    ## Description
+
+    An exploration world (``lidarena/Exploration-v0``) in which a robot drives as ``GoalChoicePolicy`` does. A step
+    lasts until the next choice is due.
+
+    ## Action space
+
+    ``Discrete(CANDIDATES)``: which candidate to go to; one that is not there stands for the nearest.
+
+    ## Observation space
+
+    ``Box(-30, 30, (CANDIDATES, FEATURES), float32)``: see ``frontier_features.NAMES``.
+
+    ## Rewards
+
+    Σ over the decision periods of the step, of length Δt: coverage · Δcompleteness - path · Δpath [m] - time · Δt [s] -
+    uncertainty · Δt · max(ln(D / 10⁻⁴), -2), and - collision at a collision. The weights are the keyword ``weights``.
+
+    ## Episode end
+
+    As in the exploration world; also when no frontier is left.
+
+    ## Arguments
+
+    ``weights``: overrides by name; all others are those of ``lidarena/Exploration-v0``.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - as gym.Env declares it
+
+    def __init__(self, weights: Mapping[str, float] | None = None, **keywords: Any) -> None:
+        """Make the world.
+
+        Raises:
+            ConfigError: An unknown weight, or a keyword that the exploration world refuses.
+        """
+        for name in weights or {}:
+            if name not in _WEIGHTS:
+                raise ConfigError(f"unknown weight {name!r}, allowed are {', '.join(_WEIGHTS)}")
+        self._weights = _WEIGHTS | dict(weights or {})
+        self._world: gym.Env[Any, Any] = gym.make("lidarena/Exploration-v0", disable_env_checker=True, **keywords)
+        self._policy = GoalChoicePolicy(self._world, self._answer)
+        self._choice: int | None = None
+        self.observation_space = gym.spaces.Box(-_LARGEST, _LARGEST, (CANDIDATES, FEATURES), np.float32)
+        self.action_space = gym.spaces.Discrete(CANDIDATES)
+
+    def _answer(self, features: NDArray[np.float32]) -> int:
+        """What the policy asks: the action of the step, or, where it is used up, the end of the step."""
+        if self._choice is None:
+            raise _ChoiceNeeded(features)
+        choice, self._choice = self._choice, None
+        return choice
+
+    def reset(
+        self, *, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[NDArray[np.float32], dict[str, Any]]:
+        """Begin an episode, up to its first choice."""
+        super().reset(seed=seed)
+        while True:
+            self._seen = self._world.reset(seed=seed)
+            seed = None
+            self._policy.reset()
+            self._choice = None
+            features, _, terminated, truncated = self._drive()
+            if not (terminated or truncated):  # a world without a single choice teaches nothing
+                return features, self._info()
+
+    def step(self, action: int) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
+        """Drive to a candidate until the next choice is due."""
+        self._choice = int(action)
+        features, reward, terminated, truncated = self._drive()
+        return features, reward, terminated, truncated, self._info()
+
+    def _drive(self) -> tuple[NDArray[np.float32], float, bool, bool]:
+        """Let the policy drive until it asks, or the episode ends."""
+        reward, nothing = 0.0, np.zeros((CANDIDATES, FEATURES), np.float32)
+        while True:
+            try:
+                action = self._policy.act(*self._seen)
+            except _ChoiceNeeded as needed:
+                return np.clip(needed.features, -_LARGEST, _LARGEST), reward, False, False
+            if self._policy.finished:
+                return nothing, reward, True, False
+            before = self._seen[1]
+            observation, _, terminated, truncated, info = self._world.step(action)
+            self._seen = observation, info
+            reward += self._cost(before, info)
+            if terminated or truncated:
+                return nothing, reward, terminated, truncated
+
+    def _cost(self, before: Mapping[str, Any], info: Mapping[str, Any]) -> float:
+        weights, duration = self._weights, info["time"] - before["time"]
+        uncertain = max(float(np.log(info["d_optimality"] / _CERTAIN)), -2.0)
+        return float(
+            weights["coverage"] * (info["completeness"] - before["completeness"])
+            - weights["path"] * (info["path_length"] - before["path_length"])
+            - duration * (weights["time"] + weights["uncertainty"] * uncertain)
+            - weights["collision"] * info["collision"]
+        )
+
+    def _info(self) -> dict[str, Any]:
+        info = self._seen[1]
+        return {name: float(info[name]) for name in ("completeness", "collision", "path_length", "time")}
+
+    def close(self) -> None:
+        """Close the world."""
+        self._world.close()
+
+
+def make_goal_choice_batch(num_envs: int = 1, **keywords: Any) -> VectorEnv[Any, Any, Any]:
+    """``num_envs`` worlds, each in a process of its own: their steps take different times."""
+    makers: list[Callable[[], gym.Env[Any, Any]]] = [partial(GoalChoiceEnv, **keywords) for _ in range(num_envs)]
+    return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.SAME_STEP)
+
+
+def register_goal_choice() -> None:
+    """Register the id; doing so again changes nothing."""
+    if GOAL_CHOICE_ID not in gym.registry:
+        gym.register(
+            id=GOAL_CHOICE_ID,
+            entry_point="lidarena.agents.goal_choice_env:GoalChoiceEnv",
+            vector_entry_point="lidarena.agents.goal_choice_env:make_goal_choice_batch",
+        )

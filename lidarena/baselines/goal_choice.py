@@ -1,0 +1,149 @@
+"""Exploration by choosing among the frontiers: somebody chooses, the driver gets there."""
+
+import math
+from collections import deque
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.baselines.driving import Terrain
+from lidarena.baselines.frontier import FrontierPolicy
+from lidarena.baselines.frontier_features import CANDIDATES, Candidate, describe
+from lidarena.planning.frontiers import Frontier, find_frontiers, nearest_cell
+from lidarena.planning.grid_search import path_costs
+
+Choose = Callable[[NDArray[np.float32]], int]
+"""From the features (CANDIDATES, FEATURES) of the candidates to the number of one."""
+
+_SMALLEST = 0.2  # frontiers below this are left (m), as in the second pass of ``frontier``
+_BACK = 2.0  # the start is a candidate when the way to it is longer than this (m)
+_SCAN_STEPS = 5  # the uncertainty falls with every scan and grows in between: the least of so many steps is told
+_PERIOD = 3.0  # a choice may be changed so often, and whenever what was chosen has vanished (s)
+
+
+class GoalChoicePolicy(FrontierPolicy):
+    """Explores like ``frontier``, except that ``choose`` says where to go next.
+
+    The candidates are the frontiers of at least 0.2 m, the nearest ones by way, and the place where the robot started:
+    going back there closes a loop. What is told of each is in :mod:`lidarena.baselines.frontier_features`. ``choose``
+    is asked when the frontier that was driven to has vanished, and every 3 s.
+
+    Attributes:
+        finished: Whether no frontier is left.
+    """
+
+    def __init__(self, env: Any, choose: Choose) -> None:
+        """Make it for an exploration environment.
+
+        Args:
+            env: The environment.
+            choose: Who chooses; a candidate that is not there stands for the nearest.
+        """
+        self._choose = choose
+        super().__init__(env, min_frontier_size=_SMALLEST, last_frontier_size=_SMALLEST)
+        self._choice_lasts = math.ceil(_PERIOD / self.driver.robot.period)
+
+    def reset(self, seed: int | None = None) -> None:
+        """Begin a new episode; nothing here is random."""
+        super().reset(seed)
+        self._chosen_at = -math.inf
+        self._goes_back = False
+        self._interrupted = False
+        self._places: list[NDArray[np.float64]] = []
+        self._uncertainties: deque[float] = deque(maxlen=_SCAN_STEPS)
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        """Return the next action.
+
+        Args:
+            observation: The environment's; only its beams are used.
+            info: The environment's; what ``frontier`` uses, and ``d_optimality``.
+        """
+        if not self._interrupted:
+            self._uncertainties.append(float(info["d_optimality"]))
+            self._places.append(np.array(info["pose"][:2], dtype=np.float64))
+        self._interrupted = True  # ``choose`` may raise, to be answered in another call with the same arguments
+        action = super().act(observation, info)
+        self._interrupted = False
+        return action
+
+    def _set_out(self, terrain: Terrain) -> bool:
+        found = find_frontiers(
+            terrain.occupancy, terrain.cell, terrain.around.resolution, _SMALLEST, goals=terrain.reachable
+        )
+        self.frontiers = [frontier for frontier in found if self._is_open(frontier, terrain)]
+        if self._goes_back:
+            self._grown_at = self._step  # nothing new is expected there
+        if not self.frontiers or self._is_exhausted(terrain):
+            return self.driver.is_cornered and bool(found)
+        if not self._goes_on(terrain):
+            self._choose_anew(terrain)
+        if self._goes_back:
+            return True
+        return self._pursue(self.frontiers, terrain) or self.driver.is_cornered
+
+    def _goes_on(self, terrain: Terrain) -> bool:
+        """Whether what was chosen is still there and too new to be chosen again; the frontier is then the first."""
+        if self._step - self._chosen_at >= self._choice_lasts:
+            return False
+        if self._goes_back:
+            return self._go_back(terrain)
+        kept = self._pursued(self.frontiers, terrain)
+        self.frontiers.sort(key=lambda frontier: frontier is not kept)
+        return kept is not None
+
+    def _choose_anew(self, terrain: Terrain) -> None:
+        """Have the next place chosen, and put the frontiers in order: that one first, then the nearest by way."""
+        open_grid = np.where(np.isfinite(terrain.cost), 1.0, np.inf)
+        lengths = path_costs(open_grid, terrain.cell) * terrain.around.resolution
+        self.frontiers.sort(key=lambda frontier: (lengths[frontier.goal], frontier.goal))
+        chosen = self._next(lengths, terrain)
+        self._chosen_at = self._step
+        self.frontiers.sort(key=lambda frontier: frontier is not chosen.frontier)
+        self._goes_back = chosen.frontier is None and self._go_back(terrain)
+
+    def _is_open(self, frontier: Frontier, terrain: Terrain) -> bool:
+        return any(not self._ledger.is_given_up(goal) for goal in self._goals(frontier, terrain))
+
+    def _go_back(self, terrain: Terrain) -> bool:
+        """Set out for the start, or go on to it; whether there is anything to drive."""
+        cell = self._start(terrain)
+        if cell[0] < 0:
+            return False
+        x, y = terrain.around.points(np.array([cell]))[0]
+        return self.driver.go((float(x), float(y)), terrain) and not self.driver.arrived
+
+    def _start(self, terrain: Terrain) -> tuple[int, int]:
+        """The reachable cell nearest to where the robot started."""
+        row, column = terrain.around.cell(*self._places[0])
+        return nearest_cell(terrain.reachable, row, column)
+
+    def _candidates(self, lengths: NDArray[np.float64], terrain: Terrain) -> list[Candidate]:
+        resolution = terrain.around.resolution
+        places = [
+            Candidate(frontier.goal, frontier.size * resolution, frontier)
+            for frontier in self.frontiers[: CANDIDATES - 1]
+        ]
+        start = self._start(terrain)
+        if start[0] >= 0 and _BACK < lengths[start] < math.inf:
+            places.append(Candidate(start, 0.0))
+        return places
+
+    def _next(self, lengths: NDArray[np.float64], terrain: Terrain) -> Candidate:
+        """Where to drive to."""
+        candidates = self._candidates(lengths, terrain)
+        if len(candidates) == 1:
+            return candidates[0]
+        current, track = self._current(candidates, terrain), np.array(self._places[:: self._every])
+        features = describe(candidates, lengths, terrain, self.driver.pose, current, min(self._uncertainties), track)
+        choice = self._choose(features)
+        return candidates[choice if 0 <= choice < len(candidates) else 0]
+
+    def _current(self, candidates: list[Candidate], terrain: Terrain) -> int | None:
+        """The number of the one that is driven to, if it is still there."""
+        if self._goes_back:
+            return len(candidates) - 1 if candidates[-1].frontier is None else None
+        kept = self._pursued([place.frontier for place in candidates if place.frontier is not None], terrain)
+        return next((i for i, place in enumerate(candidates) if kept is not None and place.frontier is kept), None)
