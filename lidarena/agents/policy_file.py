@@ -18,6 +18,7 @@ from lidarena.agents import space_json
 from lidarena.agents.atomic_files import write_bytes, write_text
 from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.networks import Architecture, all_finite, describe, rebuild, set_weights, weights_of
+from lidarena.agents.pretrained import resolve
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.agents.yaml_config import ConfigModel
 from lidarena.world.refusals import PolicyFileError
@@ -103,7 +104,8 @@ def load(path: str | Path, env: Any = None, deterministic: bool = True) -> Learn
     """Load a trained policy.
 
     Args:
-        path: Run folder (or any folder with ``policy.json``), or the ``.json`` or ``.safetensors`` file.
+        path: Run folder (or any folder with ``policy.json``), the ``.json`` or ``.safetensors`` file, or
+            ``"pretrained:NAME"``.
         env: Environment, single or batch, in which the policy is to act; if given, its spaces are compared.
         deterministic: Whether the policy takes its most probable action or draws one.
 
@@ -114,7 +116,7 @@ def load(path: str | Path, env: Any = None, deterministic: bool = True) -> Learn
         PolicyFileError: A file is missing, truncated or of another format (Stable-Baselines3's own ``.zip`` too, since
             opening one can run code), or the policy belongs to an environment with other spaces.
     """
-    card_file, weights_file = _find(Path(path))
+    card_file, weights_file = _find(resolve(path))
     card = _read_card(card_file)
     network = rebuild(
         card.architecture, space_json.from_json(card.observation_space), space_json.from_json(card.action_space)

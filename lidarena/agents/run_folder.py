@@ -55,15 +55,18 @@ def config_of(folder: str | Path) -> TrainingConfig:
     return load_config(path / CONFIG_FILE, TrainingConfig)
 
 
-def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path:
+def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path | None:
     """Find the checkpoint from which a training goes on.
 
     Args:
         folder: Of the run.
         config: With which it is to go on.
 
+    Returns:
+        The newest one; None if the training ended before its first, and so begins anew.
+
     Raises:
-        ConfigError: The folder is no run folder, was made with another configuration, or has no checkpoint.
+        ConfigError: The folder is no run folder, or was made with another configuration.
     """
     old = _flat(config_of(folder).model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
     new = _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
@@ -73,10 +76,7 @@ def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path:
                 f"the run {str(folder)!r} was trained with {key} = {old.get(key)!r}, so it cannot go on with "
                 f"{new.get(key)!r}; only {', '.join(_MAY_CHANGE)} may change"
             )
-    found = checkpoint.newest(Path(folder))
-    if found is None:
-        raise ConfigError(f"the run {str(folder)!r} has no checkpoint to go on from")
-    return found
+    return checkpoint.newest(Path(folder))
 
 
 def _take(folder: Path) -> bool:

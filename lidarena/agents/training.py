@@ -59,7 +59,7 @@ def train(
     if resume is not None:
         folder = Path(resume)
         config = config or run_folder.config_of(folder)
-        start: Path | None = run_folder.checkpoint_to_resume(folder, config)
+        start = run_folder.checkpoint_to_resume(folder, config)
         if start is not None and checkpoint.step_of(start) >= config.total_steps:
             _tell(f"{folder} already has its {config.total_steps:,} steps; a larger total_steps prolongs it", progress)
             return folder

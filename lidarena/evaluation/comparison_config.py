@@ -49,7 +49,7 @@ class PolicyEntry(ConfigModel):
     Attributes:
         name: Of a baseline (`lidarena.baselines.names`), or ``module:callable`` for a policy of yours, called with the
             environment and the options. With ``path``, any name you like for the trained agent.
-        path: Run folder of a trained agent, as `lidarena.agents.load` reads it.
+        path: Run folder of a trained agent, or ``pretrained:NAME``, as `lidarena.agents.load` reads it.
         options: Keyword arguments of the baseline.
         keywords: Of the environment, for this policy alone, over those of the environment's entry: an agent that was
             trained on another ``observation`` or ``reward`` needs the same here.

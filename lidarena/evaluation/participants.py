@@ -3,7 +3,6 @@
 import importlib
 from collections.abc import Mapping
 from functools import partial
-from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
@@ -11,6 +10,7 @@ import gymnasium as gym
 import lidarena  # noqa: F401  registers the environments, also in a spawned worker
 from lidarena import baselines
 from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
+from lidarena.agents.pretrained import resolve
 from lidarena.baselines import Policy
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.world.refusals import ConfigError, suggest
@@ -34,7 +34,7 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
 
     Raises:
         ConfigError: There is no such environment, keyword, baseline, option, module or folder.
-        PolicyFileError: The agent's files are torn or of another kind.
+        PolicyFileError: The agent's files are torn or of another kind, or no such agent is shipped.
     """
     check_policy(entry)
     keywords = dict(env_entry.keywords)
@@ -125,7 +125,7 @@ def check_policy(entry: PolicyEntry) -> None:
         ConfigError: With the nearest right name.
     """
     if entry.path is not None:
-        if not Path(entry.path).exists():
+        if not resolve(entry.path).exists():
             raise ConfigError(
                 f"policy {entry.title!r}: there is no {entry.path!r}; 'path' is the run folder that train.py wrote"
             )

@@ -149,15 +149,19 @@ def _can_loiter(
 
 @njit(cache=True, nogil=True)
 def _ahead(
-    x: float, y: float, heading: float, target: NDArray[np.float64], reach: float, speed: float, rate: float
+    pose: NDArray[np.float64], target: NDArray[np.float64], reach: float, velocities: NDArray[np.float64]
 ) -> float:
     """Seconds at least to come within ``reach`` of ``target``: turn towards its disc, drive straight."""
-    dx, dy = target[0] - x, target[1] - y
+    speed, rate = 0.0, 0.0
+    for k in range(velocities.shape[0]):
+        speed, rate = max(speed, velocities[k, 0]), max(rate, abs(velocities[k, 1]))
+    dx, dy = target[0] - pose[0], target[1] - pose[1]
     distance = math.hypot(dx, dy)
     if distance <= reach:
         return 0.0
-    error = abs((math.atan2(dy, dx) - heading + math.pi) % _TWO_PI - math.pi)
-    return (distance - reach) / speed + max(error - math.asin(reach / distance), 0.0) / rate
+    error = abs((math.atan2(dy, dx) - pose[2] + math.pi) % _TWO_PI - math.pi)
+    seconds: float = (distance - reach) / speed + max(error - math.asin(reach / distance), 0.0) / rate
+    return seconds
 
 
 @njit(cache=True, nogil=True)
@@ -213,8 +217,8 @@ def search_commands(
     """Return the quickest sequence of commands to a target nearby, see :func:`steer`.
 
     Args:
-        gap: (rows, cols) clearance of the cells (m).
-        closed: (rows, cols) cells that are forbidden.
+        gap: (rows, cols) clearance of the cells (m); ``closed`` those that are forbidden.
+        closed: (rows, cols).
         frame: (3,) x, y of the origin, side of a cell.
         start: (3,) x, y, theta.
         target: (2,) x, y.
@@ -230,17 +234,14 @@ def search_commands(
         (n,) indices of commands; (0,) if nothing was found.
     """
     reach, side, most = limits[0], 2 * int(limits[1] / _BIN) + 1, int(limits[2])
-    speed, rate = velocities[:, 0].max(), np.abs(velocities[:, 1]).max()
     headings = math.ceil(_TWO_PI / max(_TURN_EDGE, np.abs(moves[:, 2]).max()) - 1e-6)
     table = np.full(side * side * headings, -1, np.int32)
     poses, spent, keys = np.empty((most, 3)), np.zeros(most), np.empty(most)
     before = np.full((most, 2), -1, np.int64)
-    heap = np.empty(most, np.int64)
-    where = np.full(most, -1, np.int64)
-    done = np.zeros(most, np.bool_)
-    here = np.empty(3)
+    heap, where = np.empty(most, np.int64), np.full(most, -1, np.int64)
+    done, here = np.zeros(most, np.bool_), np.empty(3)
     poses[0] = start
-    keys[0] = _ahead(start[0], start[1], start[2], target, reach, speed, rate)
+    keys[0] = _ahead(start, target, reach, velocities)
     table[_bin(start, start, side, headings)] = 0
     count, size = 1, push(heap, where, keys, 0, 0)
     while size > 0:
@@ -269,7 +270,7 @@ def search_commands(
             poses[other] = here
             spent[other] = cost
             before[other, 0], before[other, 1] = node, k
-            keys[other] = cost + _ahead(here[0], here[1], here[2], target, reach, speed, rate)
+            keys[other] = cost + _ahead(here, target, reach, velocities)
             size = push(heap, where, keys, size, other)
     return np.empty(0, np.int64)
 

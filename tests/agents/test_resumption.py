@@ -153,9 +153,20 @@ def test_folders_that_are_no_run(tmp_path: Path, run: Path) -> None:
         train(resume=tmp_path / "nowhere")
     with pytest.raises(ConfigError, match=r"lacks config.yaml"):
         train(resume=tmp_path)
+
+
+def test_a_training_killed_before_its_first_checkpoint_begins_anew(tmp_path: Path, run: Path) -> None:
+    straight = train(small(tmp_path / "straight"), progress=False)
     shutil.rmtree(run / "checkpoints")
-    with pytest.raises(ConfigError, match="has no checkpoint"):
-        train(resume=run)
+    again = train(small(run), resume=run, progress=False)
+    assert equal(weights(again), weights(straight)) and curve(again) == curve(straight)
+
+
+def test_kill_9_at_random_moments_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.syspath_prepend(Path(__file__).parents[2] / "benchmarks")
+    from kills import exact_resumptions
+
+    assert exact_resumptions(kills=1, steps=3072, seed=3, root=tmp_path) == 1
 
 
 def test_a_checkpoint_that_was_being_written_does_not_count(run: Path) -> None:

@@ -1,0 +1,36 @@
+"""The shipped agents load, and drive in the environments they are for."""
+
+import gymnasium as gym
+import pytest
+
+from lidarena import agents
+from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
+from lidarena.world.refusals import PolicyFileError
+
+
+@pytest.mark.parametrize("name", agents.pretrained())
+def test_a_shipped_agent_says_how_it_was_trained(name: str) -> None:
+    policy = agents.load(f"pretrained:{name}")
+    assert policy.training["steps"] >= policy.training["total_steps"] > 0
+    assert policy.training["seed"] is not None
+
+
+@pytest.mark.parametrize("name", [name for name in agents.pretrained()])
+def test_a_shipped_agent_drives(name: str) -> None:
+    policy = agents.load(f"pretrained:{name}")
+    if policy.env_id == GOAL_CHOICE_ID:
+        return  # tests/evaluation drives it
+    env = gym.make(policy.env_id, **policy.env_keywords)
+    agents.load(f"pretrained:{name}", env)
+    observation, info = env.reset(seed=4)
+    policy.reset(seed=0)
+    for _ in range(20):
+        observation, _, terminated, truncated, info = env.step(policy.act(observation, info))
+        if terminated or truncated:
+            break
+    assert info["completeness"] > 0.1
+
+
+def test_an_agent_that_is_not_shipped_is_refused() -> None:
+    with pytest.raises(PolicyFileError, match=r"'completness' is shipped.*completeness"):
+        agents.load("pretrained:completness")
