@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from lidarena.agents.interruption import TrainingStopped
     from lidarena.agents.learned_policy import LearnedPolicy
     from lidarena.agents.policy_file import load, save_policy
-    from lidarena.agents.pretrained import pretrained
+    from lidarena.agents.shipped import pretrained
     from lidarena.agents.training import train
     from lidarena.agents.training_config import TrainingConfig
     from lidarena.agents.yaml_config import ConfigModel, dump_config, load_config
@@ -42,7 +42,7 @@ _HOMES = {
     "dump_config": "yaml_config",
     "load": "policy_file",
     "load_config": "yaml_config",
-    "pretrained": "pretrained",
+    "pretrained": "shipped",
     "save_policy": "policy_file",
     "train": "training",
 }

@@ -18,7 +18,7 @@ from lidarena.agents import space_json
 from lidarena.agents.atomic_files import write_bytes, write_text
 from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.networks import Architecture, all_finite, describe, rebuild, set_weights, weights_of
-from lidarena.agents.pretrained import resolve
+from lidarena.agents.shipped import resolve
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.agents.yaml_config import ConfigModel
 from lidarena.world.refusals import PolicyFileError

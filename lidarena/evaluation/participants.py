@@ -10,7 +10,7 @@ import gymnasium as gym
 import lidarena  # noqa: F401  registers the environments, also in a spawned worker
 from lidarena import baselines
 from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
-from lidarena.agents.pretrained import resolve
+from lidarena.agents.shipped import resolve
 from lidarena.baselines import Policy
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.world.refusals import ConfigError, suggest

@@ -38,7 +38,7 @@ def test_a_baseline_is_made_by_name() -> None:
 
 
 def fake_agent(monkeypatch: pytest.MonkeyPatch, **attributes: Any) -> PolicyEntry:
-    agent = SimpleNamespace(reset=lambda seed=None: None, act=lambda observation, info: 0, env_keywords={})
+    agent = SimpleNamespace(reset=lambda seed=None: None, act=lambda observation, info: 0, env_keywords={}, env_id="")
     agent.action_space = spaces.Discrete(3)
     vars(agent).update(attributes)
     monkeypatch.setattr(agents, "load", lambda path: agent, raising=False)

@@ -1,0 +1,105 @@
+"""The world of choices, the network that learns in it, and the agent that comes of it."""
+
+from pathlib import Path
+
+import gymnasium as gym
+import numpy as np
+import pytest
+import torch
+from gymnasium.utils.env_checker import check_env
+
+from lidarena import agents
+from lidarena.agents.candidate_policy import CandidateScores
+from lidarena.agents.goal_choice_agent import GoalChoiceAgent
+from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID, GoalChoiceEnv, register_goal_choice
+from lidarena.agents.training_config import TrainingConfig
+from lidarena.agents.yaml_config import check_config
+from lidarena.baselines.frontier_features import CANDIDATES, FEATURES
+from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
+from lidarena.evaluation.participants import make_participants
+from lidarena.world.refusals import ConfigError
+
+MAZE = "maze:5?width=5&height=5"
+
+
+def test_gymnasium_finds_nothing_to_complain_about() -> None:
+    check_env(GoalChoiceEnv(map=MAZE, max_episode_steps=200), skip_render_check=True)
+
+
+def test_rewards_are_what_their_weights_say() -> None:
+    only = {"path": 0.0, "time": 0.0, "uncertainty": 0.0, "coverage": 0.0, "collision": 0.0}
+    totals = {}
+    for name in ("path", "time", "coverage"):
+        env = GoalChoiceEnv(map=MAZE, weights=only | {name: 1.0}, max_episode_steps=400)
+        _, start = env.reset(seed=1)
+        total, ended = 0.0, False
+        while not ended:
+            _, reward, terminated, truncated, info = env.step(0)
+            total, ended = total + reward, terminated or truncated
+        key = {"path": "path_length", "time": "time", "coverage": "completeness"}[name]
+        totals[name] = (total, info[key] - start[key])
+    assert totals["path"][0] == pytest.approx(-totals["path"][1])
+    assert totals["time"][0] == pytest.approx(-totals["time"][1])
+    assert totals["coverage"][0] == pytest.approx(totals["coverage"][1]) and totals["coverage"][1] > 0.5
+
+
+def test_unknown_weights_are_refused() -> None:
+    with pytest.raises(ConfigError, match=r"unknown weight 'paht', allowed are path, "):
+        GoalChoiceEnv(map=MAZE, weights={"paht": 1.0})
+
+
+def rows(count: int) -> torch.Tensor:
+    torch.manual_seed(count)
+    observation = torch.zeros(1, CANDIDATES, FEATURES)
+    observation[0, :count] = torch.randn(count, FEATURES)
+    observation[0, :count, 0] = 1.0
+    return observation
+
+
+def test_scores_do_not_depend_on_the_place_in_the_list() -> None:
+    network = CandidateScores(CANDIDATES, FEATURES, [16, 16], torch.nn.Tanh)
+    observation = rows(CANDIDATES)
+    order = torch.randperm(CANDIDATES)
+    scores, summary = network(observation.flatten(1))
+    moved, moved_summary = network(observation[:, order].flatten(1))
+    assert torch.allclose(scores[:, order], moved, atol=1e-6)
+    assert torch.allclose(summary, moved_summary, atol=1e-6)
+
+
+@pytest.mark.parametrize("count", [0, 1, 4])
+def test_what_is_not_there_is_never_chosen(count: int) -> None:
+    network = CandidateScores(CANDIDATES, FEATURES, [16], torch.nn.ReLU)
+    scores, summary = network(rows(count).flatten(1))
+    probabilities = torch.softmax(scores, dim=1)[0]
+    assert torch.isfinite(summary).all()
+    assert float(probabilities[count:].sum().detach()) < 1e-6 or count == 0
+
+
+def test_an_agent_is_trained_saved_loaded_and_driven(tmp_path: Path) -> None:
+    content = {
+        "env": {"id": GOAL_CHOICE_ID, "keywords": {"map": MAZE, "max_episode_steps": 150, "particles": 5}},
+        "total_steps": 16,
+        "num_envs": 2,
+        "ppo": {"n_steps": 8, "batch_size": 16, "n_epochs": 1},
+        "policy": {"class": "CandidatePolicy", "net_arch": [8]},
+        "out": str(tmp_path / "run"),
+    }
+    folder = agents.train(check_config(content, TrainingConfig), progress=False)
+    env, policy = make_participants(
+        EnvEntry(id="lidarena/Exploration-v0", keywords={"map": MAZE}), PolicyEntry(name="own", path=str(folder))
+    )
+    assert isinstance(policy, GoalChoiceAgent)
+    paths = []
+    for _ in range(2):
+        observation, info = env.reset(seed=3)
+        policy.reset(seed=0)
+        for _ in range(60):
+            observation, _, _, _, info = env.step(policy.act(observation, info))
+        paths.append(info["pose"])
+    assert np.array_equal(*paths) and not policy.finished
+
+
+def test_the_id_is_registered_once() -> None:
+    register_goal_choice()
+    register_goal_choice()
+    assert GOAL_CHOICE_ID in gym.registry
