@@ -13,7 +13,7 @@ import torch
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 import lidarena.agents
-from lidarena.agents import TrainingStopped, atomic_files, load, load_config, train
+from lidarena.agents import TrainingStopped, load, load_config, train
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.world.refusals import ConfigError
 from tests.agents.fake_batch import RestorableLineBatch
