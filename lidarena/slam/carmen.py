@@ -21,8 +21,8 @@ from lidarena.world.atomic_files import write_bytes
 from lidarena.world.refusals import Refusal
 
 CLOCK_SLACK = 1.0
-"""How far back the clock may jump from one reading to the next [s]. Clocks of real logs stutter (Intel's goes back by up
-to 0.9 s, 629 times); more than this is another recording."""
+"""How far back the clock may jump from one reading to the next [s]. Clocks of real logs stutter (Intel's goes back by
+up to 0.9 s, 629 times); more than this is another recording."""
 _GZIP = b"\x1f\x8b"
 _KEYWORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _MAX_BEAMS = 20_000
@@ -92,7 +92,7 @@ def read_log(path: str | os.PathLike[str], skip_torn: bool = False) -> RecordedL
     return entries.log(Path(path).name)
 
 
-def save_log(path: str | os.PathLike[str], log: RecordedLog) -> Path:
+def save_log(path: str | Path, log: RecordedLog) -> Path:
     """Write a log as ``ODOM`` and ``FLASER`` lines; gzip if the name ends in ``.gz``.
 
     The beams must span the half turn in front as ``FLASER`` has it, and the laser must sit on the robot's centre.
@@ -114,7 +114,7 @@ def save_log(path: str | os.PathLike[str], log: RecordedLog) -> Path:
         else:
             text.append(f"ODOM {place} 0 0 0 {stamp}")
     data = ("\n".join(text) + "\n").encode()
-    return write_bytes(path, gzip.compress(data, mtime=0) if os.fspath(path).endswith(".gz") else data)
+    return write_bytes(path, gzip.compress(data, mtime=0) if str(path).endswith(".gz") else data)
 
 
 class _TornLineError(ValueError):
@@ -200,7 +200,7 @@ class _Entries:
             odometry=np.array(self.odometry, np.float64),
             scan_readings=np.array(self.scan_readings, np.int64),
             ranges=ranges,
-            angles=self.first.start + self.first.step * np.arange(ranges.shape[1]),
+            angles=np.asarray(self.first.start + self.first.step * np.arange(ranges.shape[1]), np.float64),
             max_range=longest,
             mount=_mount(self.mounts),
             skipped=self.skipped,
@@ -225,9 +225,9 @@ def _flaser(words: list[str]) -> _Message:
 
 
 def _robotlaser(words: list[str]) -> _Message:
-    """``ROBOTLASER1 type start fov step max accuracy mode n range … m remission … laser(3) robot(3) (5) time host time``.
+    """``ROBOTLASER1 type start fov step max accuracy mode n range … m remission … rest``.
 
-    The five are the velocities, the safety distances and the turn axis.
+    The rest is the laser's pose (3), the robot's (3), velocities, safety distances and turn axis (5), time, host, time.
     """
     n = _count(words[8:9], 1)
     m = _count(words[9 + n : 10 + n], 0)
@@ -249,7 +249,7 @@ _READERS: dict[str, Callable[[list[str]], _Message]] = {"ODOM": _odom, "FLASER":
 def _front_angles(beams: int) -> NDArray[np.float64]:
     """Directions (beams,) of a ``FLASER``: the half turn in front from -90° on, to +90° if the number is odd."""
     step = math.pi / max(beams - 1 if beams % 2 else beams, 1)
-    return -math.pi / 2 + step * np.arange(beams)
+    return np.asarray(-math.pi / 2 + step * np.arange(beams), np.float64)
 
 
 def _mount(mounts: list[NDArray[np.float64]]) -> NDArray[np.float64]:

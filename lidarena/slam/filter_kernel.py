@@ -137,7 +137,9 @@ def update(
     its own, since every call below takes seconds to compile.)
     """
     begins = state.updates[w] == 0
-    stride = np.int64(1) if begins else np.int64(parameters.stride)  # neighbours lie within each other's stamp: take turns
+    stride = (
+        np.int64(1) if begins else np.int64(parameters.stride)
+    )  # neighbours lie within each other's stamp: take turns
     points, motion, prior = scratch.points[s], scratch.poses[s, 0], scratch.poses[s, 1]
     count = extract_points(
         scan, directions, max_range, parameters.points, state.updates[w] % stride, stride, scratch.means[s],
@@ -149,7 +151,9 @@ def update(
     if begins:
         clear_fields(state.fields, w)
     else:
-        _likeliest_motion(w, resolution, parameters.starts, chosen, matched, motion, prior, reals, integers, state, maps)
+        _likeliest_motion(
+            w, resolution, parameters.starts, chosen, matched, motion, prior, reals, integers, state, maps
+        )
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
@@ -301,7 +305,16 @@ def _publish(
             slot = past % history
             shown, node = state.published[w, slot], state.node_poses[w, slot]
             trace_scan(
-                maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, _TAKE_BACK, outlines, s
+                maps,
+                w,
+                resolution,
+                node[shown],
+                state.node_scans[w, slot],
+                directions,
+                max_range,
+                _TAKE_BACK,
+                outlines,
+                s,
             )
             trace_scan(
                 maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, _ENTER, outlines, s

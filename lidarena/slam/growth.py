@@ -23,9 +23,7 @@ def enlarged(filters: ParticleFilters, below: int, left: int, above: int, right:
     padding = ((0, 0), (below * TILE, above * TILE), (left * TILE, right * TILE))
     wanted = np.pad(old.wanted, padding)
     worlds, particles = filters.state.particles.shape[:2]
-    new = ParticleFilters(
-        worlds, wanted, filters.directions, filters.max_range, filters.resolution, filters.parameters
-    )
+    new = ParticleFilters(worlds, wanted, filters.directions, filters.max_range, filters.resolution, filters.parameters)
     fields = empty_fields(worlds, particles, *wanted.shape[1:])
     _fill(fields, filters.state.fields, below, left)
     new.state = filters.state._replace(fields=fields)
@@ -53,7 +51,11 @@ def _fill(new: Fields, old: Fields, below: int, left: int) -> None:
 
 
 def tiles_missing(
-    origin: NDArray[np.float64], shape: tuple[int, ...], resolution: float, low: NDArray[np.float64], high: NDArray[np.float64]
+    origin: NDArray[np.float64],
+    shape: tuple[int, ...],
+    resolution: float,
+    low: NDArray[np.float64],
+    high: NDArray[np.float64],
 ) -> tuple[int, int, int, int]:
     """How many tiles a grid lacks below, left, above and right to reach from ``low`` (2,) to ``high`` (2,) [m].
 

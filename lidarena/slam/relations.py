@@ -127,7 +127,7 @@ def relation_errors(
 def _belonging(relations: Relations, times: NDArray[np.float64]) -> NDArray[np.bool_]:
     """Which relations (K,) have a pose near both of their times."""
     away = np.abs(times[_nearest(times, relations.times)] - relations.times)
-    near: NDArray[np.bool_] = (away <= TIME_SLACK).all(axis=1)
+    near: NDArray[np.bool_] = np.all(away <= TIME_SLACK, axis=1)
     return near
 
 

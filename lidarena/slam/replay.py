@@ -34,7 +34,7 @@ Progress = Callable[[int, int], None]
 REPLAY_FILTER = FilterParameters(
     linear_update=0.3,
     temporal_update=math.inf,
-    likelihood_gain=0.02,
+    likelihood_gain=0.0025,
     traced=False,
     starts=30,
     stride=1,
@@ -112,7 +112,7 @@ def replay(
     if seed < 0:
         raise LogError(f"the seed is {seed}; 0 or more is needed")
     settings = parameters or ReplayParameters()
-    odometry = compose(log.odometry, np.broadcast_to(log.mount, log.odometry.shape))
+    odometry = laser_odometry(log)
     run = _Run(log, odometry[log.scan_readings], particles, seed, settings)
     run.forward(progress)
     scans, poses = run.past()
@@ -127,13 +127,15 @@ def replay(
     )
 
 
-def usable_scans(log: RecordedLog, usable_range: float) -> NDArray[np.float32]:
-    """Ranges (S, B) in which a beam that saw nothing, or too near to tell, is 0: it says nothing about free space.
-
-    Glass and black walls give no return either. Beyond ``usable_range`` a range stays as it is.
-    """
-    limit = min(log.max_range, np.inf) * (1.0 - 1e-4)
+def informative_ranges(log: RecordedLog) -> NDArray[np.float32]:
+    """Ranges (S, B) in which a beam without return is 0, which says nothing: glass returns none either."""
+    limit = log.max_range * (1.0 - 1e-4)
     return np.where(log.ranges < limit, log.ranges, np.float32(0.0)).astype(np.float32)
+
+
+def laser_odometry(log: RecordedLog) -> NDArray[np.float64]:
+    """(R, 3) where the laser is by the wheels alone."""
+    return compose(log.odometry, np.broadcast_to(log.mount, log.odometry.shape))
 
 
 def beam_directions(log: RecordedLog) -> NDArray[np.float64]:
@@ -156,18 +158,14 @@ class _Run:
         self, log: RecordedLog, odometry: NDArray[np.float64], particles: int, seed: int, settings: ReplayParameters
     ) -> None:
         self.log, self.odometry, self.reach = log, odometry, settings.usable_range + _MARGIN
-        self.scans = usable_scans(log, settings.usable_range)
+        self.scans = informative_ranges(log)
         step = float(abs(log.angles[1] - log.angles[0]))
-        points = PointParameters(
-            jump_spread=settings.jump_beams * step, normal_spread=settings.normal_beams * step
-        )
+        points = PointParameters(jump_spread=settings.jump_beams * step, normal_spread=settings.normal_beams * step)
         history = len(odometry) + 1  # nothing of the past is ever overwritten
         parameters = settings.filter._replace(particles=particles, history=history, points=points, traced=False)
         side = 2 * math.ceil((self.reach + _GROWTH) / (TILE * CELL)) * TILE
         wanted = np.zeros((1, side, side), np.uint8)
-        self.filters = ParticleFilters(
-            1, wanted, beam_directions(log), settings.usable_range, CELL, parameters
-        )
+        self.filters = ParticleFilters(1, wanted, beam_directions(log), settings.usable_range, CELL, parameters)
         self.stream, self.seconds = seed_stream(np.random.default_rng(seed)), 0.0
         self.processed: list[int] = []
         self.filters.step(0, 0.0, np.zeros(3), self.scans[0], self.stream.copy())  # compiles
@@ -227,7 +225,7 @@ def trace_map(
         MapError: They are too far apart for a map.
     """
     reach = (parameters or ReplayParameters()).usable_range
-    ranges, directions = usable_scans(log, reach)[scans], beam_directions(log)
+    ranges, directions = informative_ranges(log)[scans], beam_directions(log)
     low = CELL * np.floor((poses[:, :2].min(axis=0) - reach) / CELL - 1.0)
     columns, rows = (int(n) for n in np.ceil((poses[:, :2].max(axis=0) + reach - low) / CELL) + 1)
     check_extent(f"the map of log {log.name!r}", rows, columns, CELL)

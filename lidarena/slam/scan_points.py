@@ -10,6 +10,7 @@ from lidarena.slam.likelihood_field import SECTORS
 from lidarena.slam.point_blocks import BLOCK
 from lidarena.world.kernels import leaf
 
+
 class PointParameters(NamedTuple):
     """How points are made of a scan; the defaults are for a lidar with a beam a degree and a few metres of range.
 

@@ -1,7 +1,6 @@
 """Trajectories: the corrected poses of some moments spread over all readings of a log, and files in TUM format."""
 
 import math
-import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -20,7 +19,7 @@ class Trajectory:
     """Where a robot was.
 
     Attributes:
-        times: (R,) strictly ascending [s].
+        times: (R,) ascending; clocks of real logs repeat themselves [s].
         poses: (R, 3) x, y [m], theta [rad].
     """
 
@@ -53,19 +52,18 @@ def spread_correction(
     share = np.clip((way - way[a]) / np.where(b > a, way[b] - way[a], 1.0), 0.0, 1.0) * (b > a)
     gap = backwards - onwards
     gap[:, 2] = wrapped(gap[:, 2])
-    poses = onwards + share[:, None] * gap
+    poses: NDArray[np.float64] = onwards + share[:, None] * gap
     poses[:, 2] = wrapped(poses[:, 2])
     return poses
 
 
 def in_order(times: NDArray[np.float64], poses: NDArray[np.float64]) -> Trajectory:
-    """Sort by time; of several poses with one time stamp the first is kept."""
+    """Sort by time; poses with one time stamp stay in the order in which they were driven."""
     order = np.argsort(times, kind="stable")
-    first = np.insert(np.diff(times[order]) > 0.0, 0, True)
-    return Trajectory(times[order][first], poses[order][first])
+    return Trajectory(times[order], poses[order])
 
 
-def save_tum(path: str | os.PathLike[str], trajectory: Trajectory) -> Path:
+def save_tum(path: str | Path, trajectory: Trajectory) -> Path:
     """Write ``time x y z qx qy qz qw`` lines, the format of the TUM RGB-D benchmark (read by evo, for one)."""
     lines = ["# time x y z qx qy qz qw"]
     for time, (x, y, theta) in zip(trajectory.times, trajectory.poses, strict=True):
@@ -74,7 +72,9 @@ def save_tum(path: str | os.PathLike[str], trajectory: Trajectory) -> Path:
     return write_text(path, "\n".join(lines) + "\n")
 
 
-def load_tum(path: str | os.PathLike[str]) -> Trajectory:
+def load_tum(path: str | Path) -> Trajectory:
     """Read what `save_tum` writes."""
     table = np.loadtxt(path, ndmin=2)
-    return Trajectory(table[:, 0], np.column_stack([table[:, 1:3], wrapped(2.0 * np.arctan2(table[:, 6], table[:, 7]))]))
+    return Trajectory(
+        table[:, 0], np.column_stack([table[:, 1:3], wrapped(2.0 * np.arctan2(table[:, 6], table[:, 7]))])
+    )
