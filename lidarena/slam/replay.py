@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.slam.calibration import OdometryCalibration, calibrated, fit_calibration
 from lidarena.slam.carmen import LogError, RecordedLog
 from lidarena.slam.growth import enlarged, tiles_missing
 from lidarena.slam.likelihood_field import CELL, TILE
@@ -24,6 +25,8 @@ from lidarena.world.map_server import OccupancyMap
 from lidarena.world.random_streams import seed_stream
 
 MAX_PARTICLES = 1000
+_CALIBRATING = 5
+"""Particles of the run that calibrates: it needs motions from scan to scan, and no loop to close."""
 _MARGIN, _GROWTH = 2.0, 10.0
 """The grid is enlarged when a scan could end nearer to its border than the one, and then by so much more [m]."""
 _ENTER = np.int64(1)
@@ -52,12 +55,14 @@ class ReplayParameters:
         usable_range: Ranges beyond this are only known to be free up to here [m].
         jump_beams: Hits on one surface are at most this many beam spacings apart.
         normal_beams: A wall's normal is fitted over at least this many beam spacings to both sides.
+        calibrate: Whether a first run with a few particles finds out what the wheels get wrong all along.
         filter: The filter's. Its ``history`` is always the whole log, and its ``points`` follow the two above.
     """
 
     usable_range: float = 20.0
     jump_beams: float = 2.9
     normal_beams: float = 2.6
+    calibrate: bool = True
     filter: FilterParameters = REPLAY_FILTER
 
 
@@ -70,13 +75,15 @@ class Replay:
         readings: (K,) which readings of the log had their scan processed.
         poses: (K, 3) the laser's poses then.
         map: The occupancy grid of all processed scans.
-        seconds: Processor time of the filter, without what it took to compile.
+        calibration: What was found out about the wheels.
+        seconds: Processor time of the filter, calibration included, without what it took to compile.
     """
 
     trajectory: Trajectory
     readings: NDArray[np.int64]
     poses: NDArray[np.float64]
     map: OccupancyMap
+    calibration: OdometryCalibration
     seconds: float
 
     @property
@@ -112,9 +119,15 @@ def replay(
     if seed < 0:
         raise LogError(f"the seed is {seed}; 0 or more is needed")
     settings = parameters or ReplayParameters()
-    odometry = laser_odometry(log)
+    odometry, calibration, seconds = laser_odometry(log), OdometryCalibration(), 0.0
+    passes = 2 if settings.calibrate else 1
+    if settings.calibrate:
+        run = _Run(log, odometry[log.scan_readings], min(particles, _CALIBRATING), seed, settings)
+        run.forward(progress, 0, passes)
+        calibration, seconds = run.calibration(), run.seconds
+        odometry = calibrated(odometry, calibration)
     run = _Run(log, odometry[log.scan_readings], particles, seed, settings)
-    run.forward(progress)
+    run.forward(progress, passes - 1, passes)
     scans, poses = run.past()
     readings = log.scan_readings[scans]
     spread = compose(spread_correction(odometry, readings, poses), inverse(log.mount))
@@ -123,7 +136,8 @@ def replay(
         readings=readings,
         poses=poses,
         map=trace_map(log, scans, poses, settings),
-        seconds=run.seconds,
+        calibration=calibration,
+        seconds=seconds + run.seconds,
     )
 
 
@@ -171,8 +185,8 @@ class _Run:
         self.filters.step(0, 0.0, np.zeros(3), self.scans[0], self.stream.copy())  # compiles
         self.filters.start(0, 0, odometry[0, :2] - 0.5 * side * CELL, odometry[0])
 
-    def forward(self, progress: Progress | None) -> None:
-        """Filter all scans."""
+    def forward(self, progress: Progress | None, done: int, passes: int) -> None:
+        """Filter all scans, in the pass after ``done`` of ``passes``."""
         total, began = len(self.odometry), time.thread_time()
         motions = between(self.odometry[:-1], self.odometry[1:])
         for k in range(total):
@@ -183,8 +197,14 @@ class _Run:
             if filters.state.updates[0] > before:
                 self.processed.append(k)
             if progress is not None and (k % 50 == 49 or k == total - 1):
-                progress(k + 1, total)
+                progress(done * total + k + 1, passes * total)
         self.seconds = time.thread_time() - began
+
+    def calibration(self) -> OdometryCalibration:
+        """What the wheels got wrong all along."""
+        scans, poses = self.past()
+        wheels = self.odometry[scans]
+        return fit_calibration(between(wheels[:-1], wheels[1:]), between(poses[:-1], poses[1:]))
 
     def _make_room(self) -> None:
         """Enlarge the grid where a scan could reach beyond it."""

@@ -57,7 +57,7 @@ def _draw(axes: "Axes", grid: OccupancyMap, poses: NDArray[np.float64]) -> Any:
     rows, columns = grid.occupancy.shape
     x, y = grid.origin[:2]
     box = (x, x + columns * grid.resolution, y, y + rows * grid.resolution)
-    axes.set_facecolor([part / 255 for part in _UNKNOWN])
+    axes.set_facecolor("#{:02x}{:02x}{:02x}".format(*_UNKNOWN))
     axes.imshow(colours, origin="lower", extent=box, interpolation="antialiased")
     ends = np.stack([poses[:-1, :2], poses[1:, :2]], axis=1)
     way = LineCollection(list(ends), cmap="plasma", array=np.linspace(0.0, 1.0, len(ends)), linewidths=1.0)
