@@ -1,8 +1,8 @@
 """What wheels get wrong in the same way all along, found by comparing them with matched scans.
 
-A wheel's radius that is off by a few per cent, or a robot that pulls to one side, is not the noise of a motion model: in
-a bare corridor, where scans do not tell how far the robot came, it adds up to a metre, and no loop closes after that.
-(On the Intel log the wheels tell 4% too much and turn by 3° a metre.)
+A wheel's radius that is off by a few per cent, or a robot that pulls to one side, is not the noise of a motion model:
+in a bare corridor, where scans do not tell how far the robot came, it adds up to a metre, and no loop closes then.
+(On the Intel log the wheels tell 4% too much and miss a turn of 3° a metre.)
 """
 
 from typing import NamedTuple
@@ -56,9 +56,9 @@ def fit_calibration(by_wheels: NDArray[np.float64], by_scans: NDArray[np.float64
 def _trimmed_fit(causes: NDArray[np.float64], effect: NDArray[np.float64]) -> NDArray[np.float64]:
     """Coefficients of ``effect`` (K,) on ``causes`` (K, c) by least squares, outliers left out round by round."""
     kept = np.ones(len(effect), np.bool_)
-    solution = np.zeros(causes.shape[1])
+    solution: NDArray[np.float64] = np.zeros(causes.shape[1])
     for _ in range(_ROUNDS):
-        solution = np.linalg.lstsq(causes[kept], effect[kept])[0]
+        solution = np.asarray(np.linalg.lstsq(causes[kept], effect[kept])[0], np.float64)
         missed = np.abs(effect - causes @ solution)
         kept = missed <= _OUTLIER * 1.4826 * np.median(missed) + 1e-9
     return solution

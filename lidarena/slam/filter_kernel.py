@@ -20,6 +20,8 @@ from lidarena.world.kernels import leaf, merged
 from lidarena.world.odometry import deviations, move, relative_motion
 from lidarena.world.random_streams import normal, uniform
 
+_TURN = 0.03
+"""Between two of the turned odometries that are tried [rad]."""
 # plain numbers as arguments would be types of their own, each compiled apart
 _ENTER, _TAKE_BACK, _FIRST = np.int64(1), np.int64(-1), np.int64(0)
 _LEAST_VARIANCE = 1e-8
@@ -151,9 +153,7 @@ def update(
     if begins:
         clear_fields(state.fields, w)
     else:
-        _likeliest_motion(
-            w, resolution, parameters.starts, chosen, matched, motion, prior, reals, integers, state, maps
-        )
+        _likeliest_motion(w, resolution, parameters, chosen, matched, motion, prior, reals, integers, state, maps)
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
@@ -190,7 +190,7 @@ def update(
 def _likeliest_motion(
     w: int,
     resolution: float,
-    starts: int,
+    parameters: FilterParameters,
     points: NDArray[np.float64],
     count: int,
     motion: NDArray[np.float64],
@@ -200,15 +200,20 @@ def _likeliest_motion(
     state: FilterState,
     maps: OccupancyMaps,
 ) -> None:
-    """Which of ``starts`` particles' sampled motions since the last scan fits the first particle's map best (3,).
+    """Which of some particles' sampled motions since the last scan fits the first particle's map best (3,).
 
     What the odometry got wrong is the same for all particles: matching starts each of them where the one before it
     ended, and the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were
-    needed. ``pose`` (3,) is overwritten.
+    needed. Beside the samples, the odometry itself is tried with some turn more and less. ``pose`` (3,) is overwritten.
     """
-    least = math.inf
-    for i in range(min(starts, state.particles.shape[1])):
-        dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
+    least, samples = math.inf, min(parameters.starts, state.particles.shape[1])
+    for i in range(samples + 2 * parameters.turned_starts):
+        if i < samples:
+            dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
+        else:
+            k = i - samples
+            dx, dy, dtheta = state.motion[w, 0], state.motion[w, 1], state.motion[w, 2]
+            dtheta += _TURN * (k // 2 + 1) * (1.0 if k % 2 == 0 else -1.0)
         copy_vector(pose, state.anchors[w, 0])
         move(pose, dx, dy, dtheta)
         missed = misfit(

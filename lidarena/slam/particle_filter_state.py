@@ -29,6 +29,8 @@ class FilterParameters(NamedTuple):
         history: Scans that the published map can take back.
         traced: Whether the map is published; without it only the particles' own maps and pasts are kept.
         starts: Sampled motions that are tried before the first particle is matched.
+        turned_starts: How many steps of 0.03 rad to each side of the odometry are tried, too; for wheels that are read
+            too early or too late in a turn.
         stride: Every how manyth point of a scan is used; which ones, changes from scan to scan.
         noise: The odometry's noise, per reading.
         points: How points are made of a scan.
@@ -45,6 +47,7 @@ class FilterParameters(NamedTuple):
     history: int = 256
     traced: bool = True
     starts: int = 8
+    turned_starts: int = 0
     stride: int = 2
     noise: OdometryNoise = OdometryNoise()
     points: PointParameters = PointParameters()

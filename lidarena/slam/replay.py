@@ -40,6 +40,7 @@ REPLAY_FILTER = FilterParameters(
     likelihood_gain=0.0025,
     traced=False,
     starts=30,
+    turned_starts=10,
     stride=1,
     matcher=MatcherParameters(points=96),
 )
@@ -188,12 +189,12 @@ class _Run:
     def forward(self, progress: Progress | None, done: int, passes: int) -> None:
         """Filter all scans, in the pass after ``done`` of ``passes``."""
         total, began = len(self.odometry), time.thread_time()
-        motions = between(self.odometry[:-1], self.odometry[1:])
+        motions = between(self.odometry[np.maximum(np.arange(total) - 1, 0)], self.odometry)
         for k in range(total):
             self._make_room()
             filters = self.filters
             before = int(filters.state.updates[0])
-            filters.step(0, 0.0, motions[k - 1], self.scans[k], self.stream)
+            filters.step(0, 0.0, motions[k], self.scans[k], self.stream)
             if filters.state.updates[0] > before:
                 self.processed.append(k)
             if progress is not None and (k % 50 == 49 or k == total - 1):

@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 from lidarena.slam.carmen import LogError
 from lidarena.slam.planar import compose
 from lidarena.slam.relations import check_overlap, read_relations, relation_errors
-from tests.slam.recorded import LAP, record, relations_of, way
 from tests.slam.drive import ring
+from tests.slam.recorded import LAP, record, relations_of, way
 
 TRUTH = way(LAP, stride=0.5)
 LOG = record(ring(), TRUTH)
