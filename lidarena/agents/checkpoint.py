@@ -21,9 +21,9 @@ from numpy.typing import NDArray
 from safetensors import SafetensorError
 from stable_baselines3 import PPO
 
-from lidarena.agents.atomic_files import write_folder
 from lidarena.agents.networks import set_weights, weights_of
 from lidarena.agents.vec_env import BatchVecEnv, Restorable
+from lidarena.world.atomic_files import write_folder
 from lidarena.world.refusals import ConfigError
 
 Arrays = dict[str, NDArray[Any]]

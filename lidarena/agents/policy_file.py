@@ -15,12 +15,12 @@ from stable_baselines3.common.base_class import BaseAlgorithm
 from stable_baselines3.common.policies import ActorCriticPolicy
 
 from lidarena.agents import space_json
-from lidarena.agents.atomic_files import write_bytes, write_text
 from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.networks import Architecture, all_finite, describe, rebuild, set_weights, weights_of
 from lidarena.agents.shipped import resolve
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.agents.yaml_config import ConfigModel
+from lidarena.world.atomic_files import write_bytes, write_text
 from lidarena.world.refusals import PolicyFileError
 
 FORMAT = "lidarena-policy"

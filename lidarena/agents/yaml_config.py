@@ -17,7 +17,7 @@ from pydantic import BaseModel, ConfigDict, ValidationError, ValidationInfo, fie
 from pydantic.fields import FieldInfo
 from pydantic_core import ErrorDetails
 
-from lidarena.agents.atomic_files import write_text
+from lidarena.world.atomic_files import write_text
 from lidarena.world.refusals import ConfigError, suggest
 
 M = TypeVar("M", bound=BaseModel)

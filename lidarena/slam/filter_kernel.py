@@ -20,10 +20,8 @@ from lidarena.world.kernels import leaf, merged
 from lidarena.world.odometry import deviations, move, relative_motion
 from lidarena.world.random_streams import normal, uniform
 
-_SAMPLED_STARTS = 8
-"""Sampled motions that are tried before the first particle is matched."""
-_REGISTERED = np.int64(2)
-"""Every how manyth point of a scan is used; which ones, changes from scan to scan."""
+_TURN = 0.03
+"""Between two of the turned odometries that are tried [rad]."""
 # plain numbers as arguments would be types of their own, each compiled apart
 _ENTER, _TAKE_BACK, _FIRST = np.int64(1), np.int64(-1), np.int64(0)
 _LEAST_VARIANCE = 1e-8
@@ -141,11 +139,13 @@ def update(
     its own, since every call below takes seconds to compile.)
     """
     begins = state.updates[w] == 0
-    stride = np.int64(1) if begins else _REGISTERED  # neighbours lie within each other's stamp: take turns
+    stride = (
+        np.int64(1) if begins else np.int64(parameters.stride)
+    )  # neighbours lie within each other's stamp: take turns
     points, motion, prior = scratch.points[s], scratch.poses[s, 0], scratch.poses[s, 1]
     count = extract_points(
-        scan, directions, max_range, state.updates[w] % stride, stride, scratch.means[s], scratch.numbers[s], points,
-        scratch.flat[s],
+        scan, directions, max_range, parameters.points, state.updates[w] % stride, stride, scratch.means[s],
+        scratch.numbers[s], points, scratch.flat[s],
     )  # fmt: skip
     chosen, matched = scratch.chosen[s], _choose(s, count, parameters.matcher.points, scratch)
     reals, integers = scratch.work.reals[s], scratch.work.integers[s]
@@ -153,7 +153,7 @@ def update(
     if begins:
         clear_fields(state.fields, w)
     else:
-        _likeliest_motion(w, resolution, chosen, matched, motion, prior, reals, integers, state, maps)
+        _likeliest_motion(w, resolution, parameters, chosen, matched, motion, prior, reals, integers, state, maps)
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
@@ -190,6 +190,7 @@ def update(
 def _likeliest_motion(
     w: int,
     resolution: float,
+    parameters: FilterParameters,
     points: NDArray[np.float64],
     count: int,
     motion: NDArray[np.float64],
@@ -199,15 +200,20 @@ def _likeliest_motion(
     state: FilterState,
     maps: OccupancyMaps,
 ) -> None:
-    """Which of the first particles' sampled motions since the last scan fits the first particle's map best (3,).
+    """Which of some particles' sampled motions since the last scan fits the first particle's map best (3,).
 
     What the odometry got wrong is the same for all particles: matching starts each of them where the one before it
     ended, and the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were
-    needed. ``pose`` (3,) is overwritten.
+    needed. Beside the samples, the odometry itself is tried with some turn more and less. ``pose`` (3,) is overwritten.
     """
-    least = math.inf
-    for i in range(min(_SAMPLED_STARTS, state.particles.shape[1])):
-        dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
+    least, samples = math.inf, min(parameters.starts, state.particles.shape[1])
+    for i in range(samples + 2 * parameters.turned_starts):
+        if i < samples:
+            dx, dy, dtheta = relative_motion(state.anchors[w, i], state.particles[w, i])
+        else:
+            k = i - samples
+            dx, dy, dtheta = state.motion[w, 0], state.motion[w, 1], state.motion[w, 2]
+            dtheta += _TURN * (k // 2 + 1) * (1.0 if k % 2 == 0 else -1.0)
         copy_vector(pose, state.anchors[w, 0])
         move(pose, dx, dy, dtheta)
         missed = misfit(
@@ -294,23 +300,33 @@ def _publish(
     for i in range(parameters.particles):
         state.node_parents[w, slot, i] = state.ancestors[w, i]
         state.ancestors[w, i] = i
-    best = _best_particle(w, slot, now, parameters, state)
-    trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, _ENTER, outlines, s)
-    state.published[w, slot] = best
-    parent = np.int64(state.node_parents[w, slot, best])
-    past = now - 1
-    while past >= 0 and past > now - history and state.published[w, past % history] != parent:
-        slot = past % history
-        shown, node = state.published[w, slot], state.node_poses[w, slot]
-        trace_scan(
-            maps, w, resolution, node[shown], state.node_scans[w, slot], directions, max_range, _TAKE_BACK, outlines, s
-        )
-        trace_scan(
-            maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, _ENTER, outlines, s
-        )
-        state.published[w, slot] = parent
-        parent = np.int64(state.node_parents[w, slot, parent])
-        past -= 1
+    if parameters.traced:
+        best = _best_particle(w, slot, now, parameters, state)
+        trace_scan(maps, w, resolution, state.particles[w, best], scan, directions, max_range, _ENTER, outlines, s)
+        state.published[w, slot] = best
+        parent = np.int64(state.node_parents[w, slot, best])
+        past = now - 1
+        while past >= 0 and past > now - history and state.published[w, past % history] != parent:
+            slot = past % history
+            shown, node = state.published[w, slot], state.node_poses[w, slot]
+            trace_scan(
+                maps,
+                w,
+                resolution,
+                node[shown],
+                state.node_scans[w, slot],
+                directions,
+                max_range,
+                _TAKE_BACK,
+                outlines,
+                s,
+            )
+            trace_scan(
+                maps, w, resolution, node[parent], state.node_scans[w, slot], directions, max_range, _ENTER, outlines, s
+            )
+            state.published[w, slot] = parent
+            parent = np.int64(state.node_parents[w, slot, parent])
+            past -= 1
     state.updates[w] = now + 1
 
 

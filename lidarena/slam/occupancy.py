@@ -87,7 +87,7 @@ def trace_scan(
         world: Which one.
         resolution: [m].
         pose: (3,) where the scan was taken.
-        scan: (beams,) ranges [m].
+        scan: (beams,) ranges [m]; a beam of range 0 says nothing.
         directions: (2, beams) cos and sin of the beams' angles.
         max_range: Ranges from here on are no returns [m].
         sign: +1 traces, -1 takes back what +1 traced with the same arguments.
@@ -117,7 +117,7 @@ def trace_scan(
         if spoken < reach - 1.0:
             change += _pass_line(visits, hits, occupancy, wanted, u, v, du, dv, spoken, r, c, sign)
         inside = 0 <= c < visits.shape[1] and 0 <= r < visits.shape[0]
-        if scan[k] < max_range and inside and (r != last_r or c != last_c):
+        if 0.0 < scan[k] < max_range and inside and (r != last_r or c != last_c):
             hits[np.uint64(r), np.uint64(c)] += sign
             change += _pass(visits, hits, occupancy, wanted, r, c, sign)
             last_r, last_c = r, c

@@ -9,6 +9,7 @@ from lidarena.slam.likelihood_field import Fields, empty_fields
 from lidarena.slam.point_blocks import Workspace, empty_blocks, empty_workspaces
 from lidarena.slam.scan_matching import MatcherParameters
 from lidarena.slam.scan_outline import Outlines, empty_outlines
+from lidarena.slam.scan_points import PointParameters
 from lidarena.world.odometry import OdometryNoise
 
 
@@ -26,7 +27,13 @@ class FilterParameters(NamedTuple):
             the error of the pose is as large as its covariance says (``benchmarks/filter_accuracy.py``).
         loyalty: The published map leaves its particle's descendants only for one this many times as likely.
         history: Scans that the published map can take back.
+        traced: Whether the map is published; without it only the particles' own maps and pasts are kept.
+        starts: Sampled motions that are tried before the first particle is matched.
+        turned_starts: How many steps of 0.03 rad to each side of the odometry are tried, too; for wheels that are read
+            too early or too late in a turn.
+        stride: Every how manyth point of a scan is used; which ones, changes from scan to scan.
         noise: The odometry's noise, per reading.
+        points: How points are made of a scan.
         matcher: The scan matcher's settings.
     """
 
@@ -38,7 +45,12 @@ class FilterParameters(NamedTuple):
     likelihood_gain: float = 0.005
     loyalty: float = 3.0
     history: int = 256
+    traced: bool = True
+    starts: int = 8
+    turned_starts: int = 0
+    stride: int = 2
     noise: OdometryNoise = OdometryNoise()
+    points: PointParameters = PointParameters()
     matcher: MatcherParameters = MatcherParameters()
 
 

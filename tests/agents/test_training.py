@@ -13,8 +13,9 @@ import torch
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 import lidarena.agents
-from lidarena.agents import TrainingStopped, atomic_files, load, load_config, train
+from lidarena.agents import TrainingStopped, load, load_config, train
 from lidarena.agents.training_config import TrainingConfig
+from lidarena.world.atomic_files import write_folder
 from lidarena.world.refusals import ConfigError
 from tests.agents.fake_batch import RestorableLineBatch
 from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
@@ -195,7 +196,6 @@ def test_weights_that_leave_the_finite_numbers_do_not_replace_good_ones(tmp_path
 
 
 def test_a_full_disk_leaves_the_last_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    write_folder = atomic_files.write_folder
     calls: list[Any] = []
 
     def full(folder: Path, fill: Any) -> Path:

@@ -9,7 +9,7 @@ from lidarena.slam.likelihood_field import FULL, SIGMA, empty_fields
 from lidarena.slam.point_blocks import as_blocks, empty_blocks, empty_workspaces
 from lidarena.slam.registration import register_points
 from lidarena.slam.scan_matching import MatcherParameters, _linearise, match, misfit
-from lidarena.slam.scan_points import extract_points
+from lidarena.slam.scan_points import PointParameters, extract_points
 from lidarena.slam.symmetric import Symmetric, determinant, inverse, rotated, times
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar
@@ -36,7 +36,7 @@ def scan_of(plan: Floorplan, pose: np.ndarray, noise: float = 0.0) -> tuple[np.n
 def points_of(scan: np.ndarray, directions: np.ndarray, first: int = 0, stride: int = 1) -> tuple:
     points, flat = empty_blocks(360), np.zeros(360, np.bool_)
     means, surface = np.zeros((360, 2)), np.zeros(360, np.int64)
-    count = extract_points(scan, directions, 3.5, first, stride, means, surface, points, flat)
+    count = extract_points(scan, directions, 3.5, PointParameters(), first, stride, means, surface, points, flat)
     return points.transpose(0, 2, 1).reshape(-1, 5)[:count], flat[:count]
 
 

@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from lidarena.agents import atomic_files
+from lidarena.world import atomic_files
 
 
 def test_an_interrupted_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
