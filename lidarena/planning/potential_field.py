@@ -4,7 +4,7 @@
     result = plan_path(circles, start, goal, "paper")   # as printed, misprints corrected
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -15,13 +15,15 @@ from lidarena.planning.field_descent import ARRIVED, COLLIDED, OUT_OF_FILLS, TRA
 from lidarena.planning.field_parameters import PRESETS, FieldParameters, FieldWarning, check_gain_ratio
 from lidarena.planning.field_parameters import field_parameters
 from lidarena.planning.field_scene import FieldScene, make_scene
-from lidarena.planning.regression_search import regression_search
+from lidarena.planning.regression_search import path_length, regression_search
 from lidarena.world.random_streams import seed_stream
 
 __all__ = ["PRESETS", "FieldParameters", "FieldWarning", "PathResult", "PotentialField", "plan_path"]
 
 _HALVING = 0.5
 """Each further attempt plans for gaps so much narrower."""
+_STRAIGHT = 1.002
+"""A path that is longer than the straight line by no more than this is not planned again from the goal."""
 
 
 class PathResult(NamedTuple):
@@ -36,6 +38,7 @@ class PathResult(NamedTuple):
         message: One sentence.
         filled: (fills, 3) x, y, s of each fill, for :class:`PotentialField`.
         parameters: With which the path was found, lengths in metres.
+        backwards: The walk led from the goal to the start, and was turned round.
     """
 
     success: bool
@@ -46,6 +49,7 @@ class PathResult(NamedTuple):
     message: str
     filled: NDArray[np.float64]
     parameters: FieldParameters
+    backwards: bool = False
 
 
 @dataclass(frozen=True)
@@ -88,7 +92,8 @@ class PotentialField:
         bounds: ArrayLike | None = None,
     ) -> "PotentialField":
         """Return the field in which a plan made its last step, with all of its fills."""
-        scene = make_scene(circles, start, goal, robot_radius, bounds)
+        ends = (goal, start) if result.backwards else (start, goal)
+        scene = make_scene(circles, *ends, robot_radius, bounds)
         return cls(scene, result.parameters, result.filled)
 
     def potential(self, points: ArrayLike) -> NDArray[np.float64]:
@@ -148,14 +153,29 @@ def plan_path(
     steps = 0
     for attempt in range(parameters.attempts):
         tried = parameters if attempt == 0 else parameters.tightened(_HALVING**attempt)
-        result = _attempt(scene, tried, noise)
-        steps += len(result.path) - 1
+        result, taken = _best_way(scene, tried, noise)
+        steps += taken
         if result.success:
             break
     if not result.success and parameters.attempts > 1:
         said = f"no path was found in {attempt + 1} attempts with {steps} steps; in the last, {result.message}"
         return result._replace(message=said)
     return result
+
+
+def _best_way(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64]) -> tuple[PathResult, int]:
+    """The shorter of the ways from the start and from the goal, if wanted, and the steps that were made for them."""
+    there = _attempt(scene, parameters, noise)
+    steps = len(there.path) - 1
+    straight = float(np.hypot(*(scene.goal - scene.start)))
+    if not parameters.both_ways or (there.success and path_length(there.smoothed) <= _STRAIGHT * straight):
+        return there, steps
+    back = _attempt(replace(scene, start=scene.goal, goal=scene.start), parameters, noise)
+    steps += len(back.path) - 1
+    if not back.success or (there.success and path_length(there.smoothed) <= path_length(back.smoothed)):
+        return there, steps
+    path, smoothed = back.path[::-1].copy(), back.smoothed[::-1].copy()
+    return back._replace(path=path, smoothed=smoothed, backwards=True), steps
 
 
 def _fitted(scene: FieldScene, preset: str, overrides: dict[str, Any]) -> FieldParameters:
