@@ -59,7 +59,8 @@ class FieldParameters:
         regression: Run the regression search.
         repeat_regression: Repeat it, from both ends, while the path gets shorter.
         fit_scale: Multiply all lengths by the power of ten that is nearest to the scene's longer side over 100 m.
-        both_ways: Walk from the goal to the start too, and take the shorter path: seen from its back, a trap is none.
+        ways: 1 to 3 ways are tried in an attempt, the shortest counts: from the start; from the goal (from its back, a
+            trap is none); from the start by the mirror image of the farthest corner, on an obstacle's other side.
         attempts: Walks, at most; each has half the ``rho_0`` and ``h_0`` of the one before, so that gaps open.
     """
 
@@ -88,7 +89,7 @@ class FieldParameters:
     regression: bool = True
     repeat_regression: bool = False
     fit_scale: bool = False
-    both_ways: bool = False
+    ways: int = 1
     attempts: int = 1
 
     def __post_init__(self) -> None:
@@ -191,7 +192,7 @@ PRESETS: dict[str, FieldParameters] = {
         guard=True,
         repeat_regression=True,
         fit_scale=True,
-        both_ways=True,
+        ways=3,
         attempts=6,
     ),
     "traditional": FieldParameters(

@@ -11,11 +11,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.planning import field_kernels
+from lidarena.planning.disc_clearance import segment_is_free
 from lidarena.planning.field_descent import ARRIVED, COLLIDED, OUT_OF_FILLS, TRAPPED, Motion, walk
-from lidarena.planning.field_parameters import PRESETS, FieldParameters, FieldWarning, check_gain_ratio
-from lidarena.planning.field_parameters import field_parameters
+from lidarena.planning.field_kernels import NEAREST
+from lidarena.planning.field_parameters import (
+    PRESETS,
+    FieldParameters,
+    FieldWarning,
+    check_gain_ratio,
+    field_parameters,
+)
 from lidarena.planning.field_scene import FieldScene, make_scene
-from lidarena.planning.regression_search import path_length, regression_search
+from lidarena.planning.regression_search import path_length, regression_search, shortened
 from lidarena.world.random_streams import seed_stream
 
 __all__ = ["PRESETS", "FieldParameters", "FieldWarning", "PathResult", "PotentialField", "plan_path"]
@@ -23,7 +30,7 @@ __all__ = ["PRESETS", "FieldParameters", "FieldWarning", "PathResult", "Potentia
 _HALVING = 0.5
 """Each further attempt plans for gaps so much narrower."""
 _STRAIGHT = 1.002
-"""A path that is longer than the straight line by no more than this is not planned again from the goal."""
+"""No other way is tried if a path is longer than the straight line by no more than this."""
 
 
 class PathResult(NamedTuple):
@@ -36,7 +43,7 @@ class PathResult(NamedTuple):
         smoothed: (S, 2) the corners left by the regression search (m); the same as ``path`` if it was not run.
         fills: How many fills the path took.
         message: One sentence.
-        filled: (fills, 3) x, y, s of each fill, for :class:`PotentialField`.
+        filled: (F, 3) x, y, s of the fills of the last walk, for :class:`PotentialField`.
         parameters: With which the path was found, lengths in metres.
         backwards: The walk led from the goal to the start, and was turned round.
     """
@@ -164,18 +171,48 @@ def plan_path(
 
 
 def _best_way(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64]) -> tuple[PathResult, int]:
-    """The shorter of the ways from the start and from the goal, if wanted, and the steps that were made for them."""
-    there = _attempt(scene, parameters, noise)
-    steps = len(there.path) - 1
-    straight = float(np.hypot(*(scene.goal - scene.start)))
-    if not parameters.both_ways or (there.success and path_length(there.smoothed) <= _STRAIGHT * straight):
-        return there, steps
-    back = _attempt(replace(scene, start=scene.goal, goal=scene.start), parameters, noise)
-    steps += len(back.path) - 1
-    if not back.success or (there.success and path_length(there.smoothed) <= path_length(back.smoothed)):
-        return there, steps
-    path, smoothed = back.path[::-1].copy(), back.smoothed[::-1].copy()
-    return back._replace(path=path, smoothed=smoothed, backwards=True), steps
+    """The shortest of several ways, see ``FieldParameters.ways``, and the steps that were made for all of them."""
+    enough = _STRAIGHT * float(np.hypot(*(scene.goal - scene.start)))
+    best = _attempt(scene, parameters, noise)
+    steps = len(best.path) - 1
+    for way in (_backwards, _other_side)[: parameters.ways - 1]:
+        if best.success and path_length(best.smoothed) <= enough:
+            break
+        other = way(scene, parameters, noise, best)
+        steps += len(other.path) - 1
+        if other.success and not (best.success and path_length(best.smoothed) <= path_length(other.smoothed)):
+            best = other
+    if best.success and parameters.regression and parameters.repeat_regression:
+        best = best._replace(smoothed=shortened(best.smoothed, *scene.keeping(parameters.h_0)))
+    return best, steps
+
+
+def _backwards(
+    scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64], best: PathResult
+) -> PathResult:
+    """Walk from the goal to the start: seen from its back, a trap is none."""
+    found = _attempt(replace(scene, start=scene.goal, goal=scene.start), parameters, noise)
+    return found._replace(path=found.path[::-1].copy(), smoothed=found.smoothed[::-1].copy(), backwards=True)
+
+
+def _other_side(
+    scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64], best: PathResult
+) -> PathResult:
+    """Walk by the mirror image of the farthest corner of the best path so far, and so on an obstacle's other side."""
+    kept, kept_walls = scene.keeping(parameters.h_0)
+    ahead = (scene.goal - scene.start) / max(float(np.hypot(*(scene.goal - scene.start))), NEAREST)
+    aside = (best.smoothed - scene.start) @ np.array([-ahead[1], ahead[0]])
+    corner = int(np.argmax(np.abs(aside)))
+    via = best.smoothed[corner] - 2.0 * aside[corner] * np.array([-ahead[1], ahead[0]])
+    if not best.success or not segment_is_free(*via, *via, kept, kept_walls, np.zeros(1, np.int64)):
+        return best
+    there = _attempt(replace(scene, goal=via), parameters, noise)
+    if not there.success:
+        return there
+    on = _attempt(replace(scene, start=via), parameters, noise)
+    path = np.vstack([there.path, on.path[1:]])
+    smoothed = regression_search(path, kept, kept_walls) if parameters.regression else path
+    return on._replace(path=path, smoothed=smoothed, fills=there.fills + on.fills)
 
 
 def _fitted(scene: FieldScene, preset: str, overrides: dict[str, Any]) -> FieldParameters:
@@ -211,7 +248,7 @@ def _attempt(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.u
         steps = np.vstack([steps, scene.goal])
     smoothed = steps.copy()
     if end == ARRIVED and parameters.regression:
-        smoothed = regression_search(steps, kept, kept_walls, parameters.repeat_regression)
+        smoothed = regression_search(steps, kept, kept_walls)
     message = _message(end, last, fills, parameters)
     return PathResult(end == ARRIVED, end == COLLIDED, steps, smoothed, fills, message, taken, parameters)
 
