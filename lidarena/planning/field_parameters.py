@@ -4,7 +4,6 @@ import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from types import MappingProxyType
 from typing import Any, ClassVar, Literal, get_args
 
 import numpy as np
@@ -30,7 +29,7 @@ class FieldWarning(UserWarning):
 class FieldParameters:
     """Every number and switch of the planner; the defaults are what the paper prints (its preset ``paper``).
 
-    Lengths are metres of the paper's 100 m room; ``scaled`` fits them to another.
+    Lengths are metres of the paper's 100 m room; ``fitted`` fits them to another.
 
     Attributes:
         k: Gain of the attraction (eq. 1).
@@ -102,10 +101,12 @@ class FieldParameters:
                 "steps of gamma could then pass over the goal for ever"
             )
 
-    def scaled(self, factor: float, given: Mapping[str, float] = MappingProxyType({})) -> "FieldParameters":
-        """Return the same parameters with every length multiplied, but for those that are ``given``."""
-        lengths: dict[str, Any] = {name: getattr(self, name) * factor for name in self.LENGTHS}
-        return replace(self, **lengths | dict(given))
+    def fitted(self, scale: float, given: Mapping[str, Any]) -> "FieldParameters":
+        """Return the same parameters with every length multiplied by ``scale``, but for those that were ``given``."""
+        if not self.fit_scale or scale == 1.0:
+            return self
+        lengths: dict[str, Any] = {name: getattr(self, name) * scale for name in self.LENGTHS if name not in given}
+        return replace(self, **lengths)
 
     def tightened(self, factor: float) -> "FieldParameters":
         """Return the same parameters for gaps narrower by ``factor`` < 1: obstacles and the goal reach less far."""

@@ -53,6 +53,10 @@ class FieldScene:
         discs[:, 2] += kept[:-4]
         return discs, self.walls + kept[-4:] * np.array([1.0, 1.0, -1.0, -1.0])
 
+    def narrowed(self, discs: NDArray[np.float64], walls: NDArray[np.float64]) -> "FieldScene":
+        """Return the same scene with the discs and walls of :meth:`keeping` in place of its own."""
+        return FieldScene(discs, walls, self.start, self.goal)
+
     @property
     def scale(self) -> float:
         """The power of ten nearest to the longer side of the room, or else of what there is, over the paper's."""

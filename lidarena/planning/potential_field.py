@@ -86,7 +86,7 @@ class PotentialField:
     ) -> "PotentialField":
         """Return the field in which :func:`plan_path` with the same arguments makes its first step."""
         scene = make_scene(circles, start, goal, robot_radius, bounds)
-        return cls(scene, _fitted(scene, preset, overrides), np.empty((0, 3)))
+        return cls(scene, field_parameters(preset, **overrides).fitted(scene.scale, overrides), np.empty((0, 3)))
 
     @classmethod
     def after(
@@ -154,7 +154,7 @@ def plan_path(
         FieldWarning: The parameters break the bound on k/η (eq. 13).
     """
     scene = make_scene(circles, start, goal, robot_radius, bounds)
-    parameters = _fitted(scene, preset, overrides)
+    parameters = field_parameters(preset, **overrides).fitted(scene.scale, overrides)
     check_gain_ratio(parameters, scene.goal_gap)
     noise = seed_stream(np.random.default_rng(parameters.seed))
     steps = 0
@@ -213,15 +213,6 @@ def _other_side(
     path = np.vstack([there.path, on.path[1:]])
     smoothed = regression_search(path, kept, kept_walls) if parameters.regression else path
     return on._replace(path=path, smoothed=smoothed, fills=there.fills + on.fills)
-
-
-def _fitted(scene: FieldScene, preset: str, overrides: dict[str, Any]) -> FieldParameters:
-    """The parameters with lengths in metres of the scene."""
-    parameters = field_parameters(preset, **overrides)
-    if not parameters.fit_scale or scene.scale == 1.0:
-        return parameters
-    given = {name: value for name, value in overrides.items() if name in FieldParameters.LENGTHS}
-    return parameters.scaled(scene.scale, given)
 
 
 def _attempt(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64]) -> PathResult:
