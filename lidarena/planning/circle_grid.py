@@ -33,7 +33,9 @@ def _gaps(
         for c in range(cols):
             least = reach
             for side in range(4):
-                least = min(least, wall_gap(frame[0] + (c + 0.5) * frame[2], frame[1] + (r + 0.5) * frame[2], walls, side))
+                least = min(
+                    least, wall_gap(frame[0] + (c + 0.5) * frame[2], frame[1] + (r + 0.5) * frame[2], walls, side)
+                )
             gaps[r, c] = least
     for i in range(discs.shape[0]):
         far = discs[i, 2] + reach

@@ -1,6 +1,4 @@
-"""Clearance of points and segments among discs and the walls of a room."""
-
-import math
+"""Whether a segment is free among discs and the walls of a room."""
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +17,7 @@ def segment_is_free(
     walls: NDArray[np.float64],
     blocker: NDArray[np.int64],
 ) -> bool:
-    """Whether a segment touches neither a disc nor a wall (exact, not sampled).
+    """Whether a segment touches no disc and stays within the walls, which it may touch (exact, not sampled).
 
     Args:
         ax: x of its first end (m).
@@ -32,7 +30,7 @@ def segment_is_free(
     """
     ex, ey = bx - ax, by - ay
     for side in range(4):
-        if wall_gap(ax, ay, walls, side) <= 0.0 or wall_gap(bx, by, walls, side) <= 0.0:
+        if wall_gap(ax, ay, walls, side) < 0.0 or wall_gap(bx, by, walls, side) < 0.0:
             return False
     length = max(ex * ex + ey * ey, 1e-300)
     for k in range(-1, discs.shape[0]):
@@ -47,21 +45,3 @@ def segment_is_free(
             blocker[0] = i
             return False
     return True
-
-
-@leaf
-def path_clearance(path: NDArray[np.float64], discs: NDArray[np.float64], walls: NDArray[np.float64]) -> float:
-    """Return the least distance (m) of a polyline (M, 2) to any disc (K, 3) or wall (4,); negative inside, inf alone."""
-    least = math.inf
-    for j in range(path.shape[0]):
-        ax, ay = path[max(j - 1, 0), 0], path[max(j - 1, 0), 1]
-        bx, by = path[j, 0], path[j, 1]
-        for side in range(4):
-            least = min(least, wall_gap(bx, by, walls, side))
-        ex, ey = bx - ax, by - ay
-        length = max(ex * ex + ey * ey, 1e-300)
-        for i in range(discs.shape[0]):
-            dx, dy = discs[i, 0] - ax, discs[i, 1] - ay
-            along = min(max((dx * ex + dy * ey) / length, 0.0), 1.0)
-            least = min(least, math.hypot(dx - along * ex, dy - along * ey) - discs[i, 2])
-    return least

@@ -87,7 +87,7 @@ def _turned_aside(
     for i in range(_TURNS.shape[0]):
         turned = heading + _TURNS[i]
         if segment_is_free(x, y, x + gamma * math.cos(turned), y + gamma * math.sin(turned), kept, kept_walls, blocker):
-            return turned
+            return float(turned)
     return math.nan
 
 
@@ -141,15 +141,11 @@ def walk(
             since = k + int(motion.window)  # one window of rest
         fx, fy = force_at(x, y, goal, discs, walls, field, fills, count)
         heading = math.atan2(fy, fx)
-        free = math.nan
         if motion.guarded != 0.0:
-            free = _turned_aside(x, y, heading, motion.gamma, kept, kept_walls, blocker)
-        if not math.isnan(free):
-            heading = free
-        path[k + 1, 0] = x + motion.gamma * math.cos(heading)
-        path[k + 1, 1] = y + motion.gamma * math.sin(heading)
-        if motion.guarded != 0.0 and math.isnan(free):
-            path[k + 1, 0], path[k + 1, 1] = x, y  # boxed in: a trap
-        elif not segment_is_free(x, y, path[k + 1, 0], path[k + 1, 1], discs, walls, blocker):
+            heading = _turned_aside(x, y, heading, motion.gamma, kept, kept_walls, blocker)
+        boxed_in = math.isnan(heading)  # stays, which is a trap
+        path[k + 1, 0] = x if boxed_in else x + motion.gamma * math.cos(heading)
+        path[k + 1, 1] = y if boxed_in else y + motion.gamma * math.sin(heading)
+        if motion.guarded == 0.0 and not segment_is_free(x, y, path[k + 1, 0], path[k + 1, 1], discs, walls, blocker):
             return k + 1, count, COLLIDED
     return last, count, OUT_OF_STEPS

@@ -54,7 +54,7 @@ class Field(NamedTuple):
 def _weight(distance: float, n: float, cap: float, unit: float) -> float:
     if n == 0.0:
         return 1.0
-    return (min(distance, cap) / unit) ** n
+    return float((min(distance, cap) / unit) ** n)
 
 
 @inlined
@@ -62,7 +62,7 @@ def _weight_slope(distance: float, n: float, cap: float, unit: float) -> float:
     """Derivative of the weight by ρ_g; at the goal itself 0, as long as n > 1."""
     if n == 0.0 or distance >= cap or distance == 0.0:
         return 0.0
-    return n * (distance / unit) ** (n - 1.0) / unit
+    return float(n * (distance / unit) ** (n - 1.0) / unit)
 
 
 @inlined
@@ -98,7 +98,7 @@ def wall_gap(x: float, y: float, walls: NDArray[np.float64], side: int) -> float
         side: Which of them.
     """
     at = x if side % 2 == 0 else y
-    return at - walls[side] if side < 2 else walls[side] - at
+    return float(at - walls[side] if side < 2 else walls[side] - at)
 
 
 @leaf

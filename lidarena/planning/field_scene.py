@@ -147,8 +147,8 @@ def _walls(bounds: ArrayLike | None, radius: float) -> NDArray[np.float64]:
 def _refuse_inside(name: str, point: NDArray[np.float64], scene: FieldScene, radius: float) -> None:
     gaps = scene._gaps(point)
     worst = int(np.argmin(gaps))
-    if gaps[worst] > 0.0:
-        return
+    if gaps[worst] > 0.0 or (gaps[worst] == 0.0 and worst >= len(scene.discs)):
+        return  # a robot may stand at a wall: the paper's starts in the corner of its room
     where = "a wall of the room"
     if worst < len(scene.discs):
         x, y, reach = scene.discs[worst]

@@ -1,7 +1,7 @@
 """Path planning by artificial potential fields: Khatib's, and the improved one of Yang et al.
 
-    result = plan_path(circles, start, goal)            # robust: what was measured to work
-    result = plan_path(circles, start, goal, "paper")   # as printed, misprints corrected
+result = plan_path(circles, start, goal)            # robust: what was measured to work
+result = plan_path(circles, start, goal, "paper")   # as printed, misprints corrected
 """
 
 from dataclasses import dataclass, replace
@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lidarena.planning import field_kernels
 from lidarena.planning.disc_clearance import segment_is_free
-from lidarena.planning.field_descent import ARRIVED, COLLIDED, OUT_OF_FILLS, TRAPPED, Motion, walk
+from lidarena.planning.field_descent import ARRIVED, COLLIDED, OUT_OF_FILLS, TRAPPED, walk
 from lidarena.planning.field_kernels import NEAREST
 from lidarena.planning.field_parameters import (
     PRESETS,

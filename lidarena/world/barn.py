@@ -3,7 +3,7 @@
 import os
 import zipfile
 from pathlib import Path
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -24,12 +24,12 @@ class BarnWorld(NamedTuple):
     """One world.
 
     Attributes:
-        index: Its number in the benchmark.
+        number: Its number in the benchmark.
         circles: Cylinders, ``(K, 3)`` as x, y, radius [m].
         reference: The benchmark's reference path with the start before and the goal behind it, ``(P, 2)`` [m].
     """
 
-    index: int
+    number: int
     circles: NDArray[np.float64]
     reference: NDArray[np.float64]
 
@@ -60,12 +60,12 @@ def load_barn(index: int, path: str | os.PathLike[str]) -> BarnWorld:
         )
     at = int(found[0])
     circles = arrays["xyr"][arrays["offset"][at] : arrays["offset"][at + 1]].astype(np.float64)
-    cells = arrays["path_rc"][arrays["path_offset"][at] : arrays["path_offset"][at + 1]]
-    reference = np.vstack([START, cells * _CELL + np.array(_ORIGIN), GOAL])
+    cells = arrays["path_rc"][arrays["path_offset"][at] : arrays["path_offset"][at + 1]].astype(np.float64)
+    reference = np.vstack([np.array(START), cells * _CELL + np.array(_ORIGIN), np.array(GOAL)])
     return BarnWorld(int(index), circles, reference)
 
 
-def _read(path: str | os.PathLike[str]) -> dict[str, NDArray[np.generic]]:
+def _read(path: str | os.PathLike[str]) -> dict[str, NDArray[Any]]:
     where = f"BARN file {os.fspath(path)!r}"
     try:
         with np.load(Path(path), allow_pickle=False) as file:
@@ -80,14 +80,14 @@ def _read(path: str | os.PathLike[str]) -> dict[str, NDArray[np.generic]]:
     return arrays
 
 
-def _check(where: str, arrays: dict[str, NDArray[np.generic]]) -> None:
+def _check(where: str, arrays: dict[str, NDArray[Any]]) -> None:
     worlds = len(arrays["world"]) if arrays["world"].ndim == 1 else 0
     for rows, offsets, width in (("xyr", "offset", 3), ("path_rc", "path_offset", 2)):
         table, cuts = arrays[rows], arrays[offsets]
         fits = table.ndim == 2 and table.shape[1] == width and cuts.shape == (worlds + 1,) and worlds > 0
-        if not fits or cuts[0] != 0 or cuts[-1] != len(table) or np.any(np.diff(cuts) < 0):  # type: ignore[type-var]
+        if not fits or cuts[0] != 0 or cuts[-1] != len(table) or np.any(np.diff(cuts) < 0):
             raise MapError(f"{where} is torn: {rows} {table.shape} and {offsets} {cuts.shape} do not fit its worlds")
         if not np.isfinite(table.astype(np.float64)).all():
             raise MapError(f"{where} is torn: {rows} holds a number that is not finite")
-    if not arrays["xyr"][:, 2].min() >= 0:  # type: ignore[operator]
+    if not arrays["xyr"][:, 2].min() >= 0:
         raise MapError(f"{where} is torn: a radius is negative")

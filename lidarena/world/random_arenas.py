@@ -40,9 +40,7 @@ def random_arena_shapes(seed: int, density: float) -> Shapes:
         MapError: The density is out of range.
     """
     if not _LEAST_DENSITY <= density <= _MOST_DENSITY:  # also refuses NaN
-        raise MapError(
-            f"a random arena has density {density:g}; {_LEAST_DENSITY:g} to {_MOST_DENSITY:g} are allowed"
-        )
+        raise MapError(f"a random arena has density {density:g}; {_LEAST_DENSITY:g} to {_MOST_DENSITY:g} are allowed")
     rng = np.random.default_rng(seed)
     circles: list[tuple[float, float, float]] = []
     covered, wanted = 0.0, density * 100.0 * 100.0
