@@ -58,5 +58,5 @@ def test_a_start_without_room_on_the_grid_has_no_path():
 
 
 def test_bad_scenes_are_refused():
-    with pytest.raises(MapError, match="goal .* inside"):
+    with pytest.raises(MapError, match=r"goal .* inside"):
         astar_path([(5, 5, 1)], (0, 0), (5, 5))

@@ -55,14 +55,8 @@ def test_a_fill_lies_in_the_trap_and_has_its_strength():
     _, fills, end = run(trap(200, 15, 0.8), (0, 0), GOAL, "robust", max_fills=1, ways=1)
     strength = field_parameters("robust").fill_strength()
     assert fills.shape == (1, 3) and fills[0, 2] == pytest.approx(strength)
-    assert math.dist(fills[0, :2], (15, 15)) < 3
+    assert math.dist(fills[0, :2], (15, 15)) < 4
     assert end in ("arrived", "out of fills")
-
-
-def test_exact_equality_hardly_ever_notices_a_trap():
-    for test, found in (("equal", False), ("window", True)):
-        _, fills, _ = run(trap(200, 15, 0.8), (0.3, 0.1), GOAL, "paper", trap_test=test, max_steps=2000)
-        assert (len(fills) > 0) is found
 
 
 def test_a_window_rests_after_a_fill():
@@ -79,13 +73,13 @@ def test_the_step_limit_ends_a_walk_in_a_cage():
     assert end == "out of fills" and len(fills) == 3
 
 
-def test_unguarded_fills_may_push_into_an_obstacle_guarded_never():
-    circles = trap(200, 15, 0.8)
-    _, _, end = run(circles, (0, 0), GOAL, trap_test="window", s=1e6, fill_shape="bump", gamma=0.5, arrival_radius=0.5)
-    assert end == "collided"
-    path, _, _ = run(circles, (0, 0), GOAL, trap_test="window", s=1e6, fill_shape="bump", gamma=0.5,
-                     arrival_radius=0.5, guard=True, max_steps=3000)  # fmt: skip
-    assert clearance(path, circles) > 1.5 - 1e-9
+def test_an_unguarded_step_may_touch_an_obstacle_a_guarded_one_never():
+    circles = [(30.0, 30.0, 4.0)]
+    options = dict(eta=1e-9, gamma=1.0, arrival_radius=0.5, trap_test="window", fill_shape="bump")
+    path, _, end = run(circles, (0, 0.1), GOAL, **options)
+    assert end == "collided" and math.dist(path[-2], (30, 30)) > 4
+    path, _, end = run(circles, (0, 0.1), GOAL, **options, guard=True)
+    assert end == "arrived" and clearance(path, circles) > 1.5 - 1e-9
 
 
 def test_a_robot_that_is_boxed_in_stays():

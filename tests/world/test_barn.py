@@ -36,9 +36,9 @@ def test_a_world_is_its_slice(tmp_path):
 
 
 def test_an_index_that_is_not_in_the_file(tmp_path):
-    with pytest.raises(MapError, match="world 1 is not in BARN file .* 2 worlds from 0 to 2, the even numbers"):
+    with pytest.raises(MapError, match=r"world 1 is not in BARN file .* 2 worlds from 0 to 2, the even numbers"):
         load_arena("barn:1", path=save(tmp_path))
-    with pytest.raises(MapError, match="world 7 is not in .* from 0 to 3$"):
+    with pytest.raises(MapError, match=r"world 7 is not in .* from 0 to 3$"):
         load_barn(7, save(tmp_path, world=np.array([0, 3])))
 
 
@@ -59,7 +59,7 @@ def test_an_index_that_is_not_in_the_file(tmp_path):
     ],
 )
 def test_arrays_that_do_not_fit_are_torn(tmp_path, changed):
-    with pytest.raises(MapError, match="BARN file .* is torn") as refusal:
+    with pytest.raises(MapError, match=r"BARN file .* is torn") as refusal:
         load_barn(0, save(tmp_path, **changed))
     assert "\n" not in str(refusal.value)
 
