@@ -179,7 +179,7 @@ def _best_way(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.
         if best.success and path_length(best.smoothed) <= enough:
             break
         other = way(scene, parameters, noise, best)
-        steps += len(other.path) - 1
+        steps += len(other.path) - 1 if other is not best else 0
         if other.success and not (best.success and path_length(best.smoothed) <= path_length(other.smoothed)):
             best = other
     if best.success and parameters.regression and parameters.repeat_regression:
