@@ -74,12 +74,20 @@ def measure(arena: Arena, planner: Planner) -> Plan:
     spent = 1e3 * (time.process_time() - begin)
     straight = math.dist(arena.start, arena.goal)
     side = max(arena.bounds[2] - arena.bounds[0], arena.bounds[3] - arena.bounds[1])
-    gaps = [clearance(path, arena, 5000.0 / side) for path in (result.smoothed, result.path)]
+    paths = (result.smoothed, result.path) if result.success else ()  # a lost walk is long, and counts for nothing
+    gaps = [clearance(path, arena, 5000.0 / side) for path in paths]
     length = path_length(result.smoothed)
-    touched = result.collided or min(gaps) < 0.0
+    touched = result.collided or min(gaps, default=0.0) < 0.0
     free = result.success and not touched
     return Plan(
-        free, touched, length / straight, path_length(result.path) / straight, gaps[0], result.fills, spent, length
+        free,
+        touched,
+        length / straight,
+        path_length(result.path) / straight,
+        min(gaps, default=0.0),
+        result.fills,
+        spent,
+        length,
     )
 
 
