@@ -61,7 +61,7 @@ def _load(spec: str) -> Floorplan:
         return _maze(spec)
     path, _, options = spec.partition("?")
     if path.endswith(".map"):
-        cell = _options(spec, options, ["cell"]).get("cell", 1.0)
+        cell = read_options(spec, options, ["cell"]).get("cell", 1.0)
         return _movingai(path, cell, _stamp(path))
     if spec.endswith((".yaml", ".yml")):
         return _map_server(spec, _stamp(spec, os.fspath(read_description(spec).image)))
@@ -80,10 +80,9 @@ def _builtin(name: str) -> Floorplan:
 @lru_cache(maxsize=256)
 def _maze(spec: str) -> Floorplan:
     seed, _, options = spec.removeprefix("maze:").partition("?")
-    if not (seed.isascii() and seed.isdecimal() and len(seed) < 20):
-        raise MapError(f"map {spec!r} has seed {seed!r}; a whole number is needed, as in 'maze:7'")
-    values = {_MAZE_OPTIONS[key]: value for key, value in _options(spec, options, list(_MAZE_OPTIONS)).items()}
-    return generate_maze(int(seed), **values, name=spec)
+    number = read_seed(spec, seed, "maze:7")
+    values = {_MAZE_OPTIONS[key]: value for key, value in read_options(spec, options, list(_MAZE_OPTIONS)).items()}
+    return generate_maze(number, **values, name=spec)
 
 
 @lru_cache(maxsize=32)
@@ -106,8 +105,23 @@ def _stamp(*paths: str) -> _Stamp:
         return ()
 
 
-def _options(spec: str, text: str, allowed: list[str]) -> dict[str, float]:
-    """Numbers from ``key=value&key=value``."""
+def read_seed(spec: str, text: str, example: str) -> int:
+    """Return the whole number in a spec such as ``"maze:7"``.
+
+    Raises:
+        MapError: It is none.
+    """
+    if not (text.isascii() and text.isdecimal() and len(text) < 20):
+        raise MapError(f"map {spec!r} has seed {text!r}; a whole number is needed, as in {example!r}")
+    return int(text)
+
+
+def read_options(spec: str, text: str, allowed: list[str]) -> dict[str, float]:
+    """Return the numbers of ``key=value&key=value``.
+
+    Raises:
+        MapError: A key is not allowed or given twice, or a value is no number.
+    """
     try:
         pairs = parse_qsl(text, keep_blank_values=True, strict_parsing=bool(text))
     except ValueError as error:
