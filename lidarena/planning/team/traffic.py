@@ -1,0 +1,216 @@
+"""The paths of a team and the tables that they fill: what every method of this room plans upon."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.planning.team.interval_route import find_quick_route
+from lidarena.planning.team.reservations import NEVER, clear, reserve
+from lidarena.planning.team.roads import STEP, UNREACHABLE, Roads
+from lidarena.planning.team.route import find_route
+from lidarena.world.kernels import leaf
+
+NO_BOUND = np.int64(2**31 - 1)
+
+
+@leaf
+def _plan_in_order(
+    order: NDArray[np.int64],
+    neighbours: NDArray[np.int32],
+    padded: NDArray[np.int32],
+    at: NDArray[np.int32],
+    begins: NDArray[np.int64],
+    entries: NDArray[np.int64],
+    ahead: NDArray[np.int32],
+    base: NDArray[np.int32],
+    layer: NDArray[np.int32],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    ends: NDArray[np.int64],
+    limits: NDArray[np.int64],
+    nodes: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    paths: NDArray[np.int32],
+    lengths: NDArray[np.int64],
+    placed: NDArray[np.bool_],
+    timed: bool,
+    budget: int,
+) -> int:
+    """Plan the robots of ``order`` one after the other past those that are ``placed``, and place them.
+
+    ``budget``: greatest number of steps of all robots of ``order`` together; -1 = any.
+
+    Returns:
+        How many were placed before one failed.
+    """
+    after = np.int64(0)  # what the robots still to come need at least
+    for k in range(len(order)):
+        after += ahead[order[k], ends[order[k], 0]] // 4096
+    for k in range(len(order)):
+        robot = order[k]
+        last = np.int64(0)
+        for other in range(len(lengths)):
+            if placed[other]:
+                last = max(last, lengths[other])
+        after -= ahead[robot, ends[robot, 0]] // 4096
+        limits[0] = (budget - after) * 4096 + 4095 if budget >= 0 else 2**31 - 1
+        if timed:
+            steps = find_route(
+                neighbours, ahead[robot], base, layer, table, until, since, last, ends[robot],
+                limits, nodes, keys, items, paths[robot],
+            )
+        else:
+            steps = find_quick_route(
+                neighbours, ahead[robot], table, until, since, ends[robot], limits, nodes, keys, items, paths[robot]
+            )
+        if steps < 0:
+            return k
+        budget = budget - steps if budget >= 0 else budget
+        lengths[robot] = steps
+        placed[robot] = True
+        reserve(paths[robot], steps, neighbours, padded, at, begins, entries, table, until, since)
+    return len(order)
+
+
+@leaf
+def _place_all(
+    neighbours: NDArray[np.int32],
+    padded: NDArray[np.int32],
+    at: NDArray[np.int32],
+    begins: NDArray[np.int64],
+    entries: NDArray[np.int64],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    paths: NDArray[np.int32],
+    lengths: NDArray[np.int64],
+    placed: NDArray[np.bool_],
+) -> None:
+    for robot in range(len(lengths)):
+        if placed[robot]:
+            reserve(paths[robot], lengths[robot], neighbours, padded, at, begins, entries, table, until, since)
+
+
+@leaf
+def _clear_some(
+    robots: NDArray[np.int64],
+    neighbours: NDArray[np.int32],
+    padded: NDArray[np.int32],
+    at: NDArray[np.int32],
+    begins: NDArray[np.int64],
+    entries: NDArray[np.int64],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    paths: NDArray[np.int32],
+    lengths: NDArray[np.int64],
+) -> None:
+    for k in range(len(robots)):
+        r = robots[k]
+        clear(paths[r], lengths[r], neighbours, padded, at, begins, entries, table, until, since)
+
+
+class Traffic:
+    """A team on its roads: paths, which of them are placed in the reservation tables, and room for searches.
+
+    Args:
+        roads: Where the robots can go.
+        ends: (k, 2) start and goal places.
+        surcharge: (n,) units that being in a place for a step costs more; None = nothing.
+
+    Attributes:
+        paths: (k, capacity) int32 places, one a time step, valid up to ``lengths``.
+        lengths: (k,) steps until each robot stays at its goal.
+        placed: (k,) bool, whose paths are in the tables.
+        ahead: (k, n) int32 what the rest of the way costs from every place.
+        alone: (k,) steps that each robot needs without the others.
+    """
+
+    def __init__(self, roads: Roads, ends: NDArray[np.int64], surcharge: NDArray[np.int32] | None = None) -> None:
+        self.roads, self.ends = roads, ends
+        places, team = len(roads), len(ends)
+        if surcharge is None:
+            self.ahead = np.array([roads.ahead(int(goal)) for _, goal in ends], np.int32).reshape(team, places)
+        else:
+            self.ahead = np.array([roads.ahead_with(int(goal), surcharge) for _, goal in ends]).reshape(team, places)
+        self.alone = np.array([int(roads.ahead(int(goal))[start]) for start, goal in ends], np.int64) // int(STEP)
+        # no layer of states beyond it is ever searched: everyone in turn, in the worst order, is far more than needed
+        reached = self.alone[self.alone < int(UNREACHABLE // STEP)]
+        self.capacity = int(2 * reached.max(initial=0) + 4 * team + 64)
+        self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
+        self.timed = surcharge is not None
+        self.layer = np.zeros((1, places), np.int32)
+        self.table = np.zeros((places, self.capacity), np.uint16)
+        self.until = np.zeros(places, np.int32)
+        self.since = np.full((places, 9), NEVER, np.int32)
+        self.nodes = np.zeros((self.capacity * places, 3), np.int32)  # untouched pages cost nothing
+        room = 4 * self.capacity * places + 64
+        self.keys, self.items = np.empty(room, np.int64), np.empty(room, np.int32)
+        self.limits = np.array([NO_BOUND, NO_BOUND, 0, 0], np.int64)
+        self.paths = np.zeros((team, self.capacity), np.int32)
+        self.lengths = np.zeros(team, np.int64)
+        self.placed = np.zeros(team, np.bool_)
+
+    def __len__(self) -> int:
+        """Number of robots."""
+        return len(self.ends)
+
+    @property
+    def _footprints(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.int64]]:
+        return self.roads.padded, self.roads.at, self.roads.begins, self.roads.entries
+
+    def plan(self, order: NDArray[np.int64], budget: int = -1) -> int:
+        """Plan robots one after the other past those that are placed, and place them.
+
+        Args:
+            order: The robots, first the one with the highest priority.
+            budget: Greatest number of steps of all of them together; -1 = any.
+
+        Returns:
+            How many were placed before one failed.
+        """
+        return _plan_in_order(
+            order,
+            self.roads.neighbours,
+            *self._footprints,
+            self.ahead,
+            self.base,
+            self.layer,
+            self.table,
+            self.until,
+            self.since,
+            self.ends,
+            self.limits,
+            self.nodes,
+            self.keys,
+            self.items,
+            self.paths,
+            self.lengths,
+            self.placed,
+            self.timed,
+            budget,
+        )
+
+    def remove(self, robots: NDArray[np.int64]) -> None:
+        """Take robots' paths out of the tables; the paths themselves stay where they are."""
+        arrays = (self.roads.neighbours, *self._footprints, self.table, self.until, self.since, self.paths, self.lengths)
+        _clear_some(robots[self.placed[robots]], *arrays)
+        self.placed[robots] = False
+        _place_all(*arrays, self.placed)
+
+    def place(self, robots: NDArray[np.int64]) -> None:
+        """Enter robots' paths, as they are, into the tables."""
+        for robot in robots:
+            r = int(robot)
+            arrays = (self.roads.neighbours, *self._footprints, self.table, self.until, self.since)
+            reserve(self.paths[r], self.lengths[r], *arrays)
+        self.placed[robots] = True
+
+    def cost(self) -> int:
+        """Steps of all robots together."""
+        return int(self.lengths.sum())
+
+    def cells(self) -> list[NDArray[np.int64]]:
+        """The paths as cells, (T, 2) each."""
+        return [self.roads.cells[path[: n + 1]] for path, n in zip(self.paths, self.lengths, strict=True)]
