@@ -99,7 +99,7 @@ class Roads:
         cells: (n, 2) [row, column] of the places.
         index: (rows, cols) int32, a cell's place, -1 where the robot cannot stand.
         neighbours: (n, 9) int32, the place to which each of ``MOVES`` leads, -1 nowhere.
-        padded: ``index`` with a margin of -1, flat; ``at`` (n,) int32 are the places' positions in it.
+        padded: ``index`` with a margin of -1, flat, in rows of ``stride``; ``at`` (n,) int32 are the places' positions in it.
         begins: Where each move's entries begin in ``entries``, see ``moves.footprints``.
         entries: The footprints.
         apart: Least distance of two robots [cells].
@@ -114,8 +114,9 @@ class Roads:
         margin = math.ceil(self.apart) + 3
         padded = np.pad(self.index, margin, constant_values=-1)
         self.neighbours: NDArray[np.int32] = _neighbours(np.pad(self.index, 1, constant_values=-1), MOVES, connectivity)
-        self.begins, self.entries = footprints(self.apart, connectivity, padded.shape[1])
-        self.at = ((self.cells[:, 0] + margin) * padded.shape[1] + self.cells[:, 1] + margin).astype(np.int32)
+        self.stride = padded.shape[1]
+        self.begins, self.entries = footprints(self.apart, connectivity, self.stride)
+        self.at = ((self.cells[:, 0] + margin) * self.stride + self.cells[:, 1] + margin).astype(np.int32)
         self.padded = padded.ravel()
         self._ahead: dict[int, NDArray[np.int32]] = {}
 

@@ -1,5 +1,7 @@
 """The paths of a team and the tables that they fill: what every method of this room plans upon."""
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -111,6 +113,66 @@ def _clear_some(
         clear(paths[r], lengths[r], neighbours, padded, at, begins, entries, table, until, since)
 
 
+@leaf
+def _replan(
+    group: NDArray[np.int64],
+    neighbours: NDArray[np.int32],
+    padded: NDArray[np.int32],
+    at: NDArray[np.int32],
+    begins: NDArray[np.int64],
+    entries: NDArray[np.int64],
+    ahead: NDArray[np.int32],
+    base: NDArray[np.int32],
+    layer: NDArray[np.int32],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    ends: NDArray[np.int64],
+    limits: NDArray[np.int64],
+    nodes: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    paths: NDArray[np.int32],
+    lengths: NDArray[np.int64],
+    placed: NDArray[np.bool_],
+    timed: bool,
+    kept_paths: NDArray[np.int32],
+    kept_lengths: NDArray[np.int64],
+) -> int:
+    """Plan the robots of ``group`` anew in this order; keep the old paths unless the sum of steps is no larger.
+
+    ``kept_paths`` and ``kept_lengths`` have ``paths``' and ``lengths``' shapes; they are scratch.
+
+    Returns:
+        Steps saved; -1 if the old paths were kept.
+    """
+    old = np.int64(0)
+    for k in range(len(group)):
+        robot = group[k]
+        old += lengths[robot]
+        kept_lengths[robot] = lengths[robot]
+        for t in range(lengths[robot] + 1):
+            kept_paths[robot, t] = paths[robot, t]
+    _clear_some(group, neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
+    for k in range(len(group)):
+        placed[group[k]] = False
+    _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
+    planned = _plan_in_order(group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, limits, nodes, keys, items, paths, lengths, placed, timed, old)
+    if planned == len(group):
+        for k in range(len(group)):
+            old -= lengths[group[k]]
+        return old
+    _clear_some(group[:planned], neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
+    for k in range(len(group)):
+        robot = group[k]
+        lengths[robot] = kept_lengths[robot]
+        placed[robot] = True
+        for t in range(lengths[robot] + 1):
+            paths[robot, t] = kept_paths[robot, t]
+    _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
+    return -1
+
+
 class Traffic:
     """A team on its roads: paths, which of them are placed in the reservation tables, and room for searches.
 
@@ -118,6 +180,8 @@ class Traffic:
         roads: Where the robots can go.
         ends: (k, 2) start and goal places.
         surcharge: (n,) units that being in a place for a step costs more; None = nothing.
+        timed: Whether places cost by time, so that waiting is not the same everywhere: search places at times, not
+            safe intervals. Always so with a surcharge.
 
     Attributes:
         paths: (k, capacity) int32 places, one a time step, valid up to ``lengths``.
@@ -127,7 +191,9 @@ class Traffic:
         alone: (k,) steps that each robot needs without the others.
     """
 
-    def __init__(self, roads: Roads, ends: NDArray[np.int64], surcharge: NDArray[np.int32] | None = None) -> None:
+    def __init__(
+        self, roads: Roads, ends: NDArray[np.int64], surcharge: NDArray[np.int32] | None = None, timed: bool = False
+    ) -> None:
         self.roads, self.ends = roads, ends
         places, team = len(roads), len(ends)
         if surcharge is None:
@@ -139,7 +205,7 @@ class Traffic:
         reached = self.alone[self.alone < int(UNREACHABLE // STEP)]
         self.capacity = int(2 * reached.max(initial=0) + 4 * team + 64)
         self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
-        self.timed = surcharge is not None
+        self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
         self.table = np.zeros((places, self.capacity), np.uint16)
         self.until = np.zeros(places, np.int32)
@@ -151,10 +217,20 @@ class Traffic:
         self.paths = np.zeros((team, self.capacity), np.int32)
         self.lengths = np.zeros(team, np.int64)
         self.placed = np.zeros(team, np.bool_)
+        self._kept_paths, self._kept_lengths = np.zeros_like(self.paths), np.zeros_like(self.lengths)
 
     def __len__(self) -> int:
         """Number of robots."""
         return len(self.ends)
+
+    @property
+    def _arrays(self) -> tuple[Any, ...]:
+        """The arguments that the kernels of planning share, in their order."""
+        return (
+            self.roads.neighbours, *self._footprints, self.ahead, self.base, self.layer, self.table, self.until,
+            self.since, self.ends, self.limits, self.nodes, self.keys, self.items, self.paths, self.lengths,
+            self.placed, self.timed,
+        )
 
     @property
     def _footprints(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.int64]]:
@@ -170,27 +246,16 @@ class Traffic:
         Returns:
             How many were placed before one failed.
         """
-        return _plan_in_order(
-            order,
-            self.roads.neighbours,
-            *self._footprints,
-            self.ahead,
-            self.base,
-            self.layer,
-            self.table,
-            self.until,
-            self.since,
-            self.ends,
-            self.limits,
-            self.nodes,
-            self.keys,
-            self.items,
-            self.paths,
-            self.lengths,
-            self.placed,
-            self.timed,
-            budget,
-        )
+        return _plan_in_order(order, *self._arrays, budget)
+
+    def replan(self, group: NDArray[np.int64]) -> int:
+        """Plan robots, all of them placed, anew in this order; the old paths stay unless the sum is no larger.
+
+        Returns:
+            Steps saved; -1 if the old paths were kept.
+        """
+        saved: int = _replan(group, *self._arrays, self._kept_paths, self._kept_lengths)
+        return saved
 
     def remove(self, robots: NDArray[np.int64]) -> None:
         """Take robots' paths out of the tables; the paths themselves stay where they are."""
@@ -206,6 +271,11 @@ class Traffic:
             arrays = (self.roads.neighbours, *self._footprints, self.table, self.until, self.since)
             reserve(self.paths[r], self.lengths[r], *arrays)
         self.placed[robots] = True
+
+    @property
+    def expanded(self) -> int:
+        """States that the last search expanded."""
+        return int(self.limits[3])
 
     def cost(self) -> int:
         """Steps of all robots together."""
