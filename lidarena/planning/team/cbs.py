@@ -92,7 +92,7 @@ class ConflictBasedSearch:
         self._weight = np.int64(max((int(STEP) - traffic.capacity) // (traffic.capacity * others), 0))
         self._base = np.zeros(len(traffic.roads), np.int32)
         self._layer = np.zeros((traffic.capacity, len(traffic.roads)), np.int32)
-        self._limits = np.array([NO_BOUND, NO_BOUND, 0, 0], np.int64)
+        traffic.limits[:2] = NO_BOUND
 
     def run(self, budget: Budget) -> CbsResult:
         """Search until the optimum is certified or the budget is spent."""
@@ -154,7 +154,7 @@ class ConflictBasedSearch:
             forbid(c.moves, np.int64(c.time), c.forever, *tables)
         steps = find_route(
             roads.neighbours, traffic.ahead[robot], self._base, layer, *tables, np.int64(last), traffic.ends[robot],
-            self._limits, traffic.nodes, traffic.keys, traffic.items, node.paths[robot],
+            traffic.limits, traffic.nodes, traffic.keys, traffic.items, node.paths[robot],
         )
         for c in mine:
             permit(c.moves, np.int64(c.time), c.forever, *tables)
