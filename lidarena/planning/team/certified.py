@@ -6,12 +6,14 @@ import numpy as np
 
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.cbs import ConflictBasedSearch
+from lidarena.planning.team.joint import plan_joint
 from lidarena.planning.team.repair import Repair
 from lidarena.planning.team.search import find_order
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
 
 _SHARE_OF_SEARCH = 0.2
+_SHARE_OF_PAIR = 0.3  # of the time, before two robots are planned jointly instead: dead ends are hard for conflicts
 _PATIENCE = 200
 
 
@@ -24,7 +26,6 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
         iterations: Greatest number of neighbourhoods, and of nodes; None = any.
         rng: For prioritized search.
     """
-    budget = Budget(seconds, iterations)
     order, placed, _ = find_order(traffic, Budget(seconds * _SHARE_OF_SEARCH, iterations), rng)
     known: int | None = None
     if placed == len(order):
@@ -33,7 +34,12 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
     paths, lengths = traffic.paths.copy(), traffic.lengths.copy()
     everyone = np.arange(len(traffic))
     traffic.remove(everyone)
-    found = ConflictBasedSearch(traffic, known).run(budget)
+    share = _SHARE_OF_PAIR if len(traffic) == 2 else 1.0
+    found = ConflictBasedSearch(traffic, known).run(Budget(seconds * share, iterations))
+    if len(traffic) == 2 and not found.found and found.lower_bound != known:
+        joint = plan_joint(traffic, seconds * (1.0 - share))
+        if joint.solved:
+            return joint
     if not found.found:
         traffic.paths[:], traffic.lengths[:] = paths, lengths
     traffic.placed[:] = found.found or known is not None

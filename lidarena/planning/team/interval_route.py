@@ -41,6 +41,8 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
     at, end = state, length
     while at >= 0:
         arrival = np.int64(nodes[at, 1]) // 4096
+        if nodes[at, 2] < 0:
+            arrival = np.int64(0)  # it starts there, if wanted with a delay
         for t in range(arrival, end + 1):
             path[t] = at // times
         end = arrival - 1
@@ -69,6 +71,7 @@ def find_quick_route(
     until: NDArray[np.int32],
     since: NDArray[np.int32],
     ends: NDArray[np.int64],
+    delay: int,
     limits: NDArray[np.int64],
     nodes: NDArray[np.int32],
     keys: NDArray[np.int64],
@@ -77,7 +80,8 @@ def find_quick_route(
 ) -> int:
     """Find the way from ``ends[0]`` to ``ends[1]`` with the fewest steps, among those the fewest diagonals.
 
-    Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins.
+    Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins. The robot
+    leaves its start at ``delay`` at the earliest, unless somebody comes too close there before.
     """
     times = table.shape[1]
     start, goal = ends[0], ends[1]
@@ -86,10 +90,11 @@ def find_quick_route(
     rest = free_from(table, until, since, goal)
     if rest < 0 or ahead[start] >= 2**30:
         return -1
-    cost = at_least(np.int64(ahead[start]), rest)
+    delay = min(delay, _end(table, until, since, start, np.int64(0)))
+    cost = at_least(delay * 4096 + ahead[start], rest)
     if cost > limits[0]:
         return -2
-    size = _offer(nodes, stamp, start * times, np.int64(0), np.int64(-1), cost, keys, items, np.int64(0))
+    size = _offer(nodes, stamp, start * times, delay * 4096, np.int64(-1), cost, keys, items, np.int64(0))
     cut = False
     while size > 0:
         state = np.int64(items[0])

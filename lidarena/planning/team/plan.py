@@ -68,6 +68,7 @@ def plan_team(
             cannot be reached, there are more starts than goals or the reverse, or an option is out of range.
     """
     _check_options(method, connectivity, radius, time_limit, iterations)
+    budget = Budget(time_limit, iterations)
     blocked = _checked_grid(grid)
     first, final = _checked_cells(starts, goals, blocked)
     if method == "joint_astar" and len(first) != 2:
@@ -89,7 +90,7 @@ def plan_team(
         case "joint_astar":
             return plan_joint(traffic, time_limit)
         case "prioritized_search":
-            return plan_search(traffic, Budget(time_limit, iterations), rng)
+            return plan_search(traffic, budget, rng)
         case "cbs":
             return plan_certified(traffic, time_limit, iterations, rng)
 

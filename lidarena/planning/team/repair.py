@@ -13,6 +13,7 @@ from lidarena.planning.team.conflicts import find_hinderers
 from lidarena.planning.team.traffic import Traffic
 
 _SMALLEST, _LARGEST = 2, 6
+_DELAYED, _LONGEST_DELAY = 0.1, 8  # share of neighbourhoods whose first robot lets others pass before it leaves
 _AT_RANDOM = 0.25  # share of neighbourhoods that are not built around a late robot
 
 
@@ -40,7 +41,11 @@ class Repair:
         traffic, least = self._traffic, int(self._traffic.alone.sum())
         idle = tried = 0
         while traffic.cost() > least and idle < patience and budget.take():
-            gain = traffic.replan(self._neighbourhood())
+            group = self._neighbourhood()
+            if self._rng.random() < _DELAYED:
+                traffic.delays[group[0]] = self._rng.integers(1, _LONGEST_DELAY + 1)
+            gain = traffic.replan(group)
+            traffic.delays[group[0]] = 0
             idle = 0 if gain > 0 else idle + 1
             tried += 1
         return tried

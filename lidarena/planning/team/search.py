@@ -3,6 +3,9 @@
 A robot that finds no way moves to the front and the team is planned again (failure-driven promotion; two or three
 rounds nearly always suffice); if that comes back to an order that was tried, the next one is random. What was found is
 improved by large-neighbourhood repair.
+
+Some problems no order of priority solves: two robots that meet half-way between them and the only place to dodge. So
+the robots of a random order, some of them, first wait at their starts.
 """
 
 import numpy as np
@@ -17,6 +20,7 @@ from lidarena.planning.team.traffic import Traffic
 PATIENCE = 300
 """Neighbourhoods without a gain after which a plan counts as settled; large teams have more of them."""
 _PATIENCE_A_ROBOT = 4
+_DELAYED = 0.5  # share of the robots of a random order that wait at their starts
 
 
 def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tuple[NDArray[np.int64], int, int]:
@@ -35,6 +39,7 @@ def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tu
     while True:
         tried += 1
         placed = traffic.plan(order)
+        traffic.delays[:] = 0
         if placed == len(order) or len(order) == 1 or not budget.take():
             return order, placed, tried
         seen.add(order.tobytes())
@@ -43,6 +48,8 @@ def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tu
         order = np.concatenate([[failed], order[order != failed]])
         if order.tobytes() in seen:
             order = rng.permutation(order)
+            late = rng.random(len(order)) < _DELAYED
+            traffic.delays[:] = np.where(late, rng.integers(1, traffic.alone.max() + 2, len(order)), 0)
 
 
 def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> TeamPlan:
@@ -51,7 +58,7 @@ def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> T
     if placed < len(order):
         message = (
             f"Robot {order[placed]} found no way past the robots before it in the last of {tried} orders of priority"
-            f" (failure-driven promotion, then random orders)."
+            f" (failure-driven promotion, then random orders and delays)."
         )
         return failed_plan(traffic, message, order)
     first = traffic.cost()

@@ -29,6 +29,7 @@ def _plan_in_order(
     until: NDArray[np.int32],
     since: NDArray[np.int32],
     ends: NDArray[np.int64],
+    delays: NDArray[np.int64],
     limits: NDArray[np.int64],
     nodes: NDArray[np.int32],
     keys: NDArray[np.int64],
@@ -64,7 +65,8 @@ def _plan_in_order(
             )
         else:
             steps = find_quick_route(
-                neighbours, ahead[robot], table, until, since, ends[robot], limits, nodes, keys, items, paths[robot]
+                neighbours, ahead[robot], table, until, since, ends[robot], delays[robot],
+                limits, nodes, keys, items, paths[robot],
             )
         if steps < 0:
             return k
@@ -128,6 +130,7 @@ def _replan(
     until: NDArray[np.int32],
     since: NDArray[np.int32],
     ends: NDArray[np.int64],
+    delays: NDArray[np.int64],
     limits: NDArray[np.int64],
     nodes: NDArray[np.int32],
     keys: NDArray[np.int64],
@@ -157,7 +160,7 @@ def _replan(
     for k in range(len(group)):
         placed[group[k]] = False
     _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
-    planned = _plan_in_order(group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, limits, nodes, keys, items, paths, lengths, placed, timed, old)
+    planned = _plan_in_order(group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, delays, limits, nodes, keys, items, paths, lengths, placed, timed, old)
     if planned == len(group):
         for k in range(len(group)):
             old -= lengths[group[k]]
@@ -187,6 +190,7 @@ class Traffic:
         paths: (k, capacity) int32 places, one a time step, valid up to ``lengths``.
         lengths: (k,) steps until each robot stays at its goal.
         placed: (k,) bool, whose paths are in the tables.
+        delays: (k,) steps that each robot waits at its start before it leaves, so that others get past; 0 unless set.
         ahead: (k, n) int32 what the rest of the way costs from every place.
         alone: (k,) steps that each robot needs without the others.
     """
@@ -214,6 +218,7 @@ class Traffic:
         room = 4 * self.capacity * places + 64
         self.keys, self.items = np.empty(room, np.int64), np.empty(room, np.int32)
         self.limits = np.array([NO_BOUND, NO_BOUND, 0, 0], np.int64)
+        self.delays = np.zeros(team, np.int64)
         self.paths = np.zeros((team, self.capacity), np.int32)
         self.lengths = np.zeros(team, np.int64)
         self.placed = np.zeros(team, np.bool_)
@@ -228,7 +233,7 @@ class Traffic:
         """The arguments that the kernels of planning share, in their order."""
         return (
             self.roads.neighbours, *self._footprints, self.ahead, self.base, self.layer, self.table, self.until,
-            self.since, self.ends, self.limits, self.nodes, self.keys, self.items, self.paths, self.lengths,
+            self.since, self.ends, self.delays, self.limits, self.nodes, self.keys, self.items, self.paths, self.lengths,
             self.placed, self.timed,
         )
 
