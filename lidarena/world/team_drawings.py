@@ -2,7 +2,8 @@
 
 The paper prints one size (19 m × 15 m) and its pictures are not ours to copy; these drawings keep what it says of them.
 All have their lower-left outer corner at (0, 0). Walls are 0.2 m thick and lie on multiples of 0.2 m, so that a grid of
-the paper's 20 cm cells shows them exactly. Two robots of 0.1 m radius or more cannot pass each other in a passage of
+the paper's 20 cm cells shows them exactly. The doors of
+``office`` are open on a grid of 60 cm, too. Two robots of 0.1 m radius or more cannot pass each other in a passage of
 0.8 m on that grid.
 """
 
@@ -46,12 +47,12 @@ def office() -> Floorplan:
     width, height, low, high = 19.0, 15.0, 6.3, 8.7
     north, south = (3.9, 7.7, 11.3, 15.1), (4.7, 9.5, 14.3)
     walls = _outer_walls(width, height)
-    walls += _horizontal(high, _HALF, width - _HALF, [(2.4, 1.0), (5.6, 1.0), (9.6, 1.0), (13.4, 1.0), (16.8, 1.0)])
-    walls += _horizontal(low, _HALF, width - _HALF, [(2.6, 1.0), (7.0, 1.0), (12.2, 1.0), (16.4, 1.0)])
+    walls += _horizontal(high, _HALF, width - _HALF, [(x, 1.0) for x in (2.1, 5.7, 9.3, 13.5, 17.1)])
+    walls += _horizontal(low, _HALF, width - _HALF, [(x, 1.0) for x in (2.7, 6.9, 12.3, 16.5)])
     for x in north:
-        walls += _vertical(x, high, height - _HALF, [(12.0, 1.0)] if x == 7.7 else [])
+        walls += _vertical(x, high, height - _HALF, [(11.7, 1.0)] if x == 7.7 else [])
     for x in south:
-        walls += _vertical(x, _HALF, low, [(3.0, 1.0)] if x == 9.5 else [])
+        walls += _vertical(x, _HALF, low, [(2.7, 1.0)] if x == 9.5 else [])
     return _plan("office", width, height, walls, (1.0, 7.5, 0.0))
 
 

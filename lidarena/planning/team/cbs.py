@@ -153,8 +153,18 @@ class ConflictBasedSearch:
         for c in mine:
             forbid(c.moves, np.int64(c.time), c.forever, *tables)
         steps = find_route(
-            roads.neighbours, traffic.ahead[robot], self._base, layer, *tables, np.int64(last), traffic.ends[robot],
-            traffic.limits, traffic.nodes, traffic.keys, traffic.items, node.paths[robot],
+            roads.neighbours,
+            traffic.ahead[robot],
+            self._base,
+            layer,
+            *tables,
+            np.int64(last),
+            traffic.ends[robot],
+            traffic.limits,
+            traffic.nodes,
+            traffic.keys,
+            traffic.items,
+            node.paths[robot],
         )
         for c in mine:
             permit(c.moves, np.int64(c.time), c.forever, *tables)

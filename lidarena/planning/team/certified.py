@@ -42,14 +42,14 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
             return joint
     if not found.found:
         traffic.paths[:], traffic.lengths[:] = paths, lengths
-    traffic.placed[:] = found.found or known is not None
-    if not traffic.placed.all():
+    if known is None and not found.found:
         robot = int(order[placed])
         return failed_plan(
             traffic,
             f"Conflict-based search ended after {found.nodes} nodes without a plan, and robot {robot} found no way in"
             f" prioritized search.",
         )
+    traffic.place(everyone)
     bound = min(found.lower_bound, traffic.cost())
     proved = "certified as optimal" if bound == traffic.cost() else f"not certified: the bound is {bound}"
     gap = "" if math.isclose(bound, traffic.cost()) else f", {traffic.cost() / bound - 1:.1%} below"

@@ -70,6 +70,11 @@ class DeviationCosts:
         roads = traffic.roads
         stride = np.int64(roads.stride)
         _add_along(
-            traffic.paths[robot], traffic.lengths[robot], roads.padded, roads.at, self._offsets, stride,
+            traffic.paths[robot],
+            traffic.lengths[robot],
+            roads.padded,
+            roads.at,
+            self._offsets,
+            stride,
             traffic.layer,
         )

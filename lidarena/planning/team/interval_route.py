@@ -52,8 +52,15 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
 
 @leaf
 def _offer(
-    nodes: NDArray[np.int32], stamp: int, state: int, spent: int, before: int, cost: int,
-    keys: NDArray[np.int64], items: NDArray[np.int32], size: int,
+    nodes: NDArray[np.int32],
+    stamp: int,
+    state: int,
+    spent: int,
+    before: int,
+    cost: int,
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    size: int,
 ) -> int:
     """Put a state on the open list unless it was reached as cheaply before; return the list's size."""
     met = nodes[state, 0]

@@ -140,5 +140,5 @@ def plan_joint(traffic: Traffic, seconds: float) -> TeamPlan:
         what = "there is no plan for robots 0 and 1 together" if one == -1 else "the limit was reached"
         return failed_plan(traffic, f"Joint A* ended after {expanded} states: {what}.")
     traffic.lengths[:] = one, other
-    traffic.placed[:] = True
+    traffic.place(np.arange(2))
     return solved_plan(traffic, f"Joint A* expanded {expanded} states.", lower_bound=traffic.cost())

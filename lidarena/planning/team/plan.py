@@ -79,7 +79,20 @@ def plan_team(
     strays = _deviation(deviation, method)
     _check_reachable(roads, ends, blocked)
     traffic = Traffic(roads, ends, surcharge, timed=strays is not None)
-    rng = np.random.default_rng(seed)
+    plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), strays)
+    traffic.close()
+    return plan
+
+
+def _plan(
+    traffic: Traffic,
+    method: Method,
+    budget: Budget,
+    time_limit: float,
+    iterations: int | None,
+    rng: np.random.Generator,
+    strays: DeviationCosts | None,
+) -> TeamPlan:
     match method:
         case "independent_astar":
             return plan_independent(traffic)
@@ -95,9 +108,7 @@ def plan_team(
             return plan_certified(traffic, time_limit, iterations, rng)
 
 
-def _check_options(
-    method: str, connectivity: int, radius: float, time_limit: float, iterations: int | None
-) -> None:
+def _check_options(method: str, connectivity: int, radius: float, time_limit: float, iterations: int | None) -> None:
     if method not in get_args(Method):
         raise TeamError(f"there is no method {method!r}{suggest(str(method), get_args(Method))}")
     if connectivity not in (4, 8):
@@ -195,5 +206,3 @@ def _deviation(deviation: ArrayLike | None, method: str) -> DeviationCosts | Non
     if method != "prioritized_astar":
         raise TeamError(f"method {method!r} takes no deviation model; 'prioritized_astar' does")
     return DeviationCosts(deviation)
-
-

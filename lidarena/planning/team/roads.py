@@ -17,6 +17,7 @@ straight move, so that paths run straight."""
 
 UNREACHABLE = np.int64(2**30)
 _CACHED_GOALS = 4096
+_KEPT_WORKSPACES = 2
 
 
 @kernel
@@ -85,6 +86,25 @@ def _flood_costs(
                 size = push(keys, items, size, new, there)
 
 
+class Workspace:
+    """Arrays of a size that is expensive to allocate, for one team at a time; see ``reservations`` and ``route``.
+
+    Args:
+        places: Number of places.
+        times: Steps up to which moves can be reserved.
+    """
+
+    def __init__(self, places: int, times: int) -> None:
+        self.times = times
+        self.table = np.zeros((places, times), np.uint16)
+        self.until = np.zeros(places, np.int32)
+        self.since = np.full((places, 9), UNREACHABLE, np.int32)
+        self.nodes = np.zeros((times * places, 3), np.int32)  # pages that no search touches cost nothing
+        room = 4 * times * places + 64
+        self.keys, self.items = np.empty(room, np.int64), np.empty(room, np.int32)
+        self.limits = np.array([2**31 - 1, 2**31 - 1, 0, 0], np.int64)
+
+
 class Roads:
     """The places of a grid for robots of one radius; a place is the number of a cell in raster order.
 
@@ -119,6 +139,7 @@ class Roads:
         self.at = ((self.cells[:, 0] + margin) * self.stride + self.cells[:, 1] + margin).astype(np.int32)
         self.padded = padded.ravel()
         self._ahead: dict[int, NDArray[np.int32]] = {}
+        self._spare: list[Workspace] = []
 
     def __len__(self) -> int:
         """Number of places."""
@@ -127,6 +148,19 @@ class Roads:
     def place(self, cell: NDArray[np.int64]) -> int:
         """The place of a cell [row, column]; -1 where the robot cannot stand."""
         return int(self.index[cell[0], cell[1]])
+
+    def borrow(self, times: int) -> Workspace:
+        """A workspace with empty tables for at least ``times`` steps, which nobody else has."""
+        try:
+            spare = self._spare.pop()
+        except IndexError:
+            return Workspace(len(self), times)
+        return spare if spare.times >= times else Workspace(len(self), times)
+
+    def give_back(self, workspace: Workspace) -> None:
+        """Keep a workspace, its tables empty again, for the next team."""
+        if len(self._spare) < _KEPT_WORKSPACES:
+            self._spare.append(workspace)
 
     def ahead(self, goal: int) -> NDArray[np.int32]:
         """What the shortest way from every place to ``goal`` costs (n,), in units; ``UNREACHABLE`` without a way.

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.planning.team.interval_route import find_quick_route
-from lidarena.planning.team.reservations import NEVER, clear, reserve
+from lidarena.planning.team.reservations import clear, reserve
 from lidarena.planning.team.roads import STEP, UNREACHABLE, Roads
 from lidarena.planning.team.route import find_route
 from lidarena.world.kernels import leaf
@@ -60,13 +60,35 @@ def _plan_in_order(
         limits[0] = (budget - after) * 4096 + 4095 if budget >= 0 else 2**31 - 1
         if timed:
             steps = find_route(
-                neighbours, ahead[robot], base, layer, table, until, since, last, ends[robot],
-                limits, nodes, keys, items, paths[robot],
+                neighbours,
+                ahead[robot],
+                base,
+                layer,
+                table,
+                until,
+                since,
+                last,
+                ends[robot],
+                limits,
+                nodes,
+                keys,
+                items,
+                paths[robot],
             )
         else:
             steps = find_quick_route(
-                neighbours, ahead[robot], table, until, since, ends[robot], delays[robot],
-                limits, nodes, keys, items, paths[robot],
+                neighbours,
+                ahead[robot],
+                table,
+                until,
+                since,
+                ends[robot],
+                delays[robot],
+                limits,
+                nodes,
+                keys,
+                items,
+                paths[robot],
             )
         if steps < 0:
             return k
@@ -160,7 +182,31 @@ def _replan(
     for k in range(len(group)):
         placed[group[k]] = False
     _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
-    planned = _plan_in_order(group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, delays, limits, nodes, keys, items, paths, lengths, placed, timed, old)
+    planned = _plan_in_order(
+        group,
+        neighbours,
+        padded,
+        at,
+        begins,
+        entries,
+        ahead,
+        base,
+        layer,
+        table,
+        until,
+        since,
+        ends,
+        delays,
+        limits,
+        nodes,
+        keys,
+        items,
+        paths,
+        lengths,
+        placed,
+        timed,
+        old,
+    )
     if planned == len(group):
         for k in range(len(group)):
             old -= lengths[group[k]]
@@ -211,13 +257,11 @@ class Traffic:
         self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
         self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
-        self.table = np.zeros((places, self.capacity), np.uint16)
-        self.until = np.zeros(places, np.int32)
-        self.since = np.full((places, 9), NEVER, np.int32)
-        self.nodes = np.zeros((self.capacity * places, 3), np.int32)  # untouched pages cost nothing
-        room = 4 * self.capacity * places + 64
-        self.keys, self.items = np.empty(room, np.int64), np.empty(room, np.int32)
-        self.limits = np.array([NO_BOUND, NO_BOUND, 0, 0], np.int64)
+        self._workspace = roads.borrow(self.capacity)
+        work = self._workspace
+        self.table, self.until, self.since = work.table, work.until, work.since
+        self.nodes, self.keys, self.items, self.limits = work.nodes, work.keys, work.items, work.limits
+        self.limits[:2] = NO_BOUND
         self.delays = np.zeros(team, np.int64)
         self.paths = np.zeros((team, self.capacity), np.int32)
         self.lengths = np.zeros(team, np.int64)
@@ -228,13 +272,42 @@ class Traffic:
         """Number of robots."""
         return len(self.ends)
 
+    def close(self) -> None:
+        """Empty the tables and give the room for searches back; the paths stay."""
+        _clear_some(
+            np.flatnonzero(self.placed),
+            self.roads.neighbours,
+            *self._footprints,
+            self.table,
+            self.until,
+            self.since,
+            self.paths,
+            self.lengths,
+        )
+        self.roads.give_back(self._workspace)
+
     @property
     def _arrays(self) -> tuple[Any, ...]:
         """The arguments that the kernels of planning share, in their order."""
         return (
-            self.roads.neighbours, *self._footprints, self.ahead, self.base, self.layer, self.table, self.until,
-            self.since, self.ends, self.delays, self.limits, self.nodes, self.keys, self.items, self.paths, self.lengths,
-            self.placed, self.timed,
+            self.roads.neighbours,
+            *self._footprints,
+            self.ahead,
+            self.base,
+            self.layer,
+            self.table,
+            self.until,
+            self.since,
+            self.ends,
+            self.delays,
+            self.limits,
+            self.nodes,
+            self.keys,
+            self.items,
+            self.paths,
+            self.lengths,
+            self.placed,
+            self.timed,
         )
 
     @property
@@ -264,7 +337,15 @@ class Traffic:
 
     def remove(self, robots: NDArray[np.int64]) -> None:
         """Take robots' paths out of the tables; the paths themselves stay where they are."""
-        arrays = (self.roads.neighbours, *self._footprints, self.table, self.until, self.since, self.paths, self.lengths)
+        arrays = (
+            self.roads.neighbours,
+            *self._footprints,
+            self.table,
+            self.until,
+            self.since,
+            self.paths,
+            self.lengths,
+        )
         _clear_some(robots[self.placed[robots]], *arrays)
         self.placed[robots] = False
         _place_all(*arrays, self.placed)
