@@ -58,9 +58,19 @@ def solve(problem: Problem, method: str, time_limit: float = 1.0) -> Answer:
     return Answer(plan, seconds)
 
 
+def largest_part(roads: Roads) -> NDArray[np.int64]:
+    """The places of the largest part of a grid whose places are all within reach of each other."""
+    left, parts = np.ones(len(roads), np.bool_), []
+    while left.any():
+        within = roads.ahead(int(np.argmax(left))) < UNREACHABLE
+        left &= ~within
+        parts.append(np.flatnonzero(within))
+    return max(parts, key=len)
+
+
 def draw_team(roads: Roads, robots: int, rng: np.random.Generator, allowed: NDArray[np.int64] | None = None) -> Problem:
     """A random problem: starts apart from each other, goals too, every goal within reach."""
-    places = np.arange(len(roads)) if allowed is None else allowed
+    places = largest_part(roads) if allowed is None else allowed
     blocked = roads.index < 0  # robots of this radius stand anywhere else
     while True:
         ends = np.stack([rng.choice(places, robots, replace=False) for _ in range(2)])
@@ -226,7 +236,8 @@ def certified(data: Path, count: int) -> None:
 def solved(data: Path, count: int) -> None:
     """Fig. 15 and 16: teams of 2 to 6 in two environments; and the hard cases."""
     print(
-        "Fig. 15, 16: teams whose paths conflict; cost over the independent paths where both methods solve, share solved"
+        "Fig. 15, 16: teams whose paths conflict; cost over the independent paths where both methods solve,"
+        " share solved"
     )
     methods = ("prioritized_astar", "coordination", "prioritized_search")
     for name in ("office", "unstructured"):

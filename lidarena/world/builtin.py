@@ -44,7 +44,7 @@ def names() -> list[str]:
 def builtin_floorplan(name: str) -> Floorplan:
     """Return a floor plan that comes with the package.
 
-    ``env1`` … ``env4`` are drawn (see ``drawings``), and so are ``office``, ``unstructured``, ``passing`` and ``blocked``
+    ``env1`` … ``env4`` are drawn (see ``drawings``), so are ``office``, ``unstructured``, ``passing`` and ``blocked``
     for teams (see ``team_drawings``). The others were mapped by robots: ``turtlebot3_world`` and
     ``aws_small_house`` in simulation, ``willow`` in the building of Willow Garage; ``willow_lobby`` is a part of it,
     14.0 m wide and 13.5 m high, around a meeting room between a lobby and a corridor.

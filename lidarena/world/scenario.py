@@ -50,7 +50,8 @@ def load_scenario(
     for robot, kind in np.argwhere(~free[ends[:, :, 0], ends[:, :, 1]]):
         x, y = ends[robot, kind, 1], free.shape[0] - 1 - ends[robot, kind, 0]
         raise ScenarioError(
-            f"{where} has the {('start', 'goal')[kind]} of robot {robot} at x = {x}, y = {y}, which is a wall of this map"
+            f"{where} has the {('start', 'goal')[kind]} of robot {robot} at x = {x}, y = {y},"
+            " which is a wall of this map"
         )
     return Scenario(ends[:, 0].copy(), ends[:, 1].copy())
 
@@ -66,8 +67,8 @@ def _read_entry(
         float(fields[8])
     except (IndexError, ValueError) as error:
         raise ScenarioError(
-            f"{where} is torn in line {number}: nine fields (bucket, map, width, height, start x, start y, goal x, goal y,"
-            f" length) are needed, not {line.strip()[:60]!r}"
+            f"{where} is torn in line {number}: nine fields (bucket, map, width, height, start x, start y, goal x,"
+            f" goal y, length) are needed, not {line.strip()[:60]!r}"
         ) from error
     if (height, width) != shape:
         raise ScenarioError(

@@ -61,7 +61,8 @@ def unstructured() -> Floorplan:
     boxes = [
         (1.8, 1.6, 3.4, 3.0), (5.0, 1.2, 5.8, 3.6), (7.8, 1.8, 9.8, 2.6), (11.4, 1.4, 12.4, 3.4),
         (1.2, 5.0, 2.2, 6.8), (3.8, 5.2, 5.4, 6.0), (6.8, 4.4, 7.6, 6.8), (9.2, 4.6, 11.0, 5.4), (12.4, 5.6, 13.0, 7.0),
-        (2.0, 8.8, 4.0, 9.6), (5.6, 8.0, 6.4, 10.4), (8.2, 8.4, 9.2, 9.8), (10.6, 7.4, 11.4, 9.0), (11.6, 10.2, 12.8, 10.8),
+        (2.0, 8.8, 4.0, 9.6), (5.6, 8.0, 6.4, 10.4), (8.2, 8.4, 9.2, 9.8), (10.6, 7.4, 11.4, 9.0),
+        (11.6, 10.2, 12.8, 10.8),
     ]  # fmt: skip
     rings = [[(x1, y1), (x2, y1), (x2, y2), (x1, y2)] for x1, y1, x2, y2 in boxes]
     rings += [[(3.8, 7.2), (4.6, 7.2), (4.2, 8.0)], [(9.0, 6.6), (9.8, 6.6), (9.4, 7.4)]]
@@ -89,7 +90,7 @@ def passing() -> Floorplan:
 def blocked() -> Floorplan:
     """16.2 m × 6.4 m: a hall, and a dead end 0.8 m wide in which one robot stands that others want to pass (Fig. 17).
 
-    In the paper's order, longest way first, robots 0 and 2 are on their way into the dead end before robot 4 can get out.
+    In the paper's order, longest way first, robots 0 and 2 are on their way into the dead end before 4 can get out.
     """
     width, height = 16.2, 6.4
     rings = [[(6.2, 0.0), (width, 0.0), (width, 2.8), (6.2, 2.8)], [(6.2, 3.6), (width, 3.6), (width, 6.4), (6.2, 6.4)]]

@@ -1,9 +1,9 @@
 """Conflict-based search (Sharon et al. 2015) for discs: the optimum of a small team, with a certificate.
 
-A node of the search tree has constraints for each robot and the cheapest paths that obey them; the sum of their steps is a
-lower bound for every plan that does. The best node is split at a conflict; a node without conflicts is optimal. Three
-additions: the plan of prioritized search is an upper bound, so that the search may also end because nothing can be
-cheaper; of a node's conflicts the one is split that raises the cost in both children, if there is one (cardinal
+A node of the search tree has constraints for each robot and the cheapest paths that obey them; the sum of their steps
+is a lower bound for every plan that does. The best node is split at a conflict; a node without conflicts is optimal.
+Three additions: the plan of prioritized search is an upper bound, so that the search may also end because nothing can
+be cheaper; of a node's conflicts the one is split that raises the cost in both children, if there is one (cardinal
 conflicts, Boyarski et al. 2015); and a child that costs the same and conflicts less replaces its parent (bypassing).
 """
 
@@ -17,7 +17,6 @@ from numpy.typing import NDArray
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.constraints import Constraint, forbid, permit, split
 from lidarena.planning.team.prioritized import conflicts_of
-from lidarena.planning.team.reservations import NEVER
 from lidarena.planning.team.roads import STEP
 from lidarena.planning.team.route import GAVE_UP, find_route
 from lidarena.planning.team.traffic import NO_BOUND, Traffic

@@ -1,9 +1,9 @@
 """How two robots that conflict are kept apart: two constraints, one of which every plan without conflicts obeys.
 
-The constraints of conflict-based search forbid one move of one robot each; with discs as large as several cells, a conflict
-would come back in hundreds of variants. So the moment and the point where the two are closest are taken, and each robot
-is forbidden *every* move that at this moment is within a radius of this point: two that both were would overlap
-(mutually disjunctive constraints, Li et al. 2019, "Multi-agent path finding for large agents"). A robot that
+The constraints of conflict-based search forbid one move of one robot each; with discs as large as several cells, a
+conflict would come back in hundreds of variants. So the moment and the point where the two are closest are taken, and
+each robot is forbidden *every* move that at this moment is within a radius of this point: two that both were would
+overlap (mutually disjunctive constraints, Li et al. 2019, "Multi-agent path finding for large agents"). A robot that
 conflicts with one at its goal either never comes close from then on, or the other arrives later.
 """
 
@@ -92,8 +92,9 @@ def split(
             Constraint(moves, time, _near_goal(roads, int(goal)), True),
             Constraint(rests, time, np.array([[goal, 1]], np.int64), False),
         )
-    (r0, c0), (r1, c1) = roads.cells[steps[0]].astype(float)
-    (p0, q0), (p1, q1) = roads.cells[steps[1]].astype(float)
+    one, other = roads.cells[steps].astype(np.float64)  # (begin and end, row and column) each
+    (r0, c0), (r1, c1) = one.tolist()
+    (p0, q0), (p1, q1) = other.tolist()
     when = nearest_approach(p0 - r0, q0 - c0, (p1 - p0) - (r1 - r0), (q1 - q0) - (c1 - c0))
     row = (r0 + p0 + when * (r1 - r0 + p1 - p0)) / 2
     col = (c0 + q0 + when * (c1 - c0 + q1 - q0)) / 2
@@ -112,7 +113,7 @@ def _through(roads: Roads, when: float, row: float, col: float) -> NDArray[np.in
             if place < 0:
                 continue
             away = (r + when * MOVES[:, 0] - row) ** 2 + (c + when * MOVES[:, 1] - col) ** 2
-            close = away < max(roads.radius**2 - CLOSE, CLOSE)
+            close = away < max(roads.radius**2 - CLOSE / 4, CLOSE / 4)
             bits = int(np.sum((close & (roads.neighbours[place] >= 0)) << np.arange(9)))
             if bits:
                 found.append((place, bits))
@@ -123,4 +124,5 @@ def _near_goal(roads: Roads, goal: int) -> NDArray[np.int64]:
     """Every move that conflicts with a robot which waits at a place."""
     entries = roads.entries[roads.begins[0] : roads.begins[1]]
     places = roads.padded[roads.at[goal] + entries[:, 0]]
-    return np.stack([places, entries[:, 1]], axis=1)[places >= 0].astype(np.int64)
+    moves: NDArray[np.int64] = np.stack([places, entries[:, 1]], axis=1)[places >= 0].astype(np.int64)
+    return moves

@@ -53,7 +53,7 @@ def _schedule(
             index = length
             for when in range(t, -1, -1):
                 result[when] = path[index]
-                index = np.int64(before[when, index])
+                index = int(before[when, index])
             return t
         before[t + 1, :] = -1
         for s in range(length + 1):
@@ -97,7 +97,7 @@ def plan_coordination(traffic: Traffic, back_up: bool = False) -> TeamPlan:
         )
         if steps < 0:
             message = (
-                f"Robot {robot} (priority {k + 1} of {len(traffic)}, longest first) has no timing on its independent path"
+                f"Robot {robot} (priority {k + 1} of {len(traffic)}, longest first) has no timing on its own path"
                 f" that passes the robots before it within {traffic.capacity} steps of the coordination diagram."
             )
             return failed_plan(traffic, message, order)

@@ -16,7 +16,7 @@ from lidarena.world.kernels import leaf
 @leaf
 def _begin(table: NDArray[np.uint16], until: NDArray[np.int32], place: int, t: int) -> int:
     """When the stretch of waiting in ``place`` begins that ``t`` belongs to."""
-    begin = min(t, np.int64(until[place]))
+    begin = min(t, int(until[place]))
     while begin > 0 and not table[place, begin - 1] & 1:
         begin -= 1
     return begin
@@ -25,8 +25,8 @@ def _begin(table: NDArray[np.uint16], until: NDArray[np.int32], place: int, t: i
 @leaf
 def _end(table: NDArray[np.uint16], until: NDArray[np.int32], since: NDArray[np.int32], place: int, t: int) -> int:
     """The last time that a robot in ``place`` at ``t`` can be there without a move; 2**30 = for ever."""
-    final = np.int64(since[place, 0])
-    for end in range(t, min(np.int64(until[place]), final)):
+    final = int(since[place, 0])
+    for end in range(t, min(int(until[place]), final)):
         if table[place, end] & 1:
             return end
     return max(final, t)
@@ -35,18 +35,18 @@ def _end(table: NDArray[np.uint16], until: NDArray[np.int32], since: NDArray[np.
 @leaf
 def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.int32]) -> int:
     """Write the places that lead to ``state`` into ``path``, waits included; return the number of steps, or GAVE_UP."""
-    length = np.int64(nodes[state, 1]) // 4096
+    length = int(nodes[state, 1]) // 4096
     if length >= len(path):
         return -2
     at, end = state, length
     while at >= 0:
-        arrival = np.int64(nodes[at, 1]) // 4096
+        arrival = int(nodes[at, 1]) // 4096
         if nodes[at, 2] < 0:
-            arrival = np.int64(0)  # it starts there, if wanted with a delay
+            arrival = 0  # it starts there, if wanted with a delay
         for t in range(arrival, end + 1):
             path[t] = at // times
         end = arrival - 1
-        at = np.int64(nodes[at, 2])
+        at = int(nodes[at, 2])
     return length
 
 
@@ -71,6 +71,54 @@ def _offer(
 
 
 @leaf
+def _depart(
+    neighbours: NDArray[np.int32],
+    ahead: NDArray[np.int32],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    state: int,
+    m: int,
+    rest: int,
+    stamp: int,
+    limits: NDArray[np.int64],
+    nodes: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    size: int,
+) -> int:
+    """Offer what move ``m`` from ``state`` leads to: for each stretch of time there the first departure into it.
+
+    Returns:
+        The open list's size, -1 when it is full; sets the sign of ``limits[0]`` where the bound was in the way.
+    """
+    times = table.shape[1]
+    here, spent = state // times, int(nodes[state, 1])
+    there, t = int(neighbours[here, m]), spent // 4096
+    small = (spent & 4095) + (1 if m > 4 else 0)
+    most = limits[0] if limits[0] >= 0 else ~limits[0]
+    while t < since[here, m]:
+        later = t + 1
+        if t >= until[here] or not table[here, t] >> m & 1:
+            cost = at_least(later * 4096 + small + ahead[there], rest)
+            if cost > most:
+                limits[0] = ~most
+                return size
+            if size + 1 >= len(keys):
+                return -1
+            following = there * times + _begin(table, until, there, later)
+            size = _offer(nodes, stamp, following, later * 4096 + small, state, cost, keys, items, size)
+            later = max(_end(table, until, since, there, later), later)
+            if later >= 2**30:
+                return size
+        while t < later and t < since[here, 0] and (t >= until[here] or not table[here, t] & 1):
+            t += 1
+        if t < later:
+            return size
+    return size
+
+
+@leaf
 def find_quick_route(
     neighbours: NDArray[np.int32],
     ahead: NDArray[np.int32],
@@ -87,8 +135,9 @@ def find_quick_route(
 ) -> int:
     """Find the way from ``ends[0]`` to ``ends[1]`` with the fewest steps, among those the fewest diagonals.
 
-    Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins. The robot
-    leaves its start at ``delay`` at the earliest, unless somebody comes too close there before.
+    Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins. The
+    robot leaves its start at ``delay`` at the earliest, unless somebody comes too close there before. Where the
+    greatest cost cut the search off, ``limits[0]`` comes back with its bits inverted.
     """
     times = table.shape[1]
     start, goal = ends[0], ends[1]
@@ -102,9 +151,8 @@ def find_quick_route(
     if cost > limits[0]:
         return -2
     size = _offer(nodes, stamp, start * times, delay * 4096, np.int64(-1), cost, keys, items, np.int64(0))
-    cut = False
     while size > 0:
-        state = np.int64(items[0])
+        state = int(items[0])
         size = pop(keys, items, size)
         if nodes[state, 0] > stamp:
             continue
@@ -115,29 +163,12 @@ def find_quick_route(
         limits[3] += 1
         if limits[3] > limits[1]:
             return -2
-        spent = np.int64(nodes[state, 1])
+        spent = int(nodes[state, 1])
         for m in range(1, 9):
-            there = np.int64(neighbours[here, m])
-            if there < 0:
-                continue
-            t = spent // 4096
-            small = (spent & 4095) + (1 if m > 4 else 0)
-            while t < since[here, m]:  # every departure that leads into another stretch of time there
-                later = t + 1
-                if t >= until[here] or not table[here, t] >> m & 1:
-                    cost = at_least(later * 4096 + small + ahead[there], rest)
-                    if cost > limits[0]:
-                        cut = True
-                        break
-                    if size + 1 >= len(keys):
-                        return -2
-                    following = there * times + _begin(table, until, there, later)
-                    size = _offer(nodes, stamp, following, later * 4096 + small, state, cost, keys, items, size)
-                    later = max(_end(table, until, since, there, later), later)
-                    if later >= 2**30:
-                        break
-                while t < later and t < since[here, 0] and (t >= until[here] or not table[here, t] & 1):
-                    t += 1
-                if t < later:
-                    break
-    return -2 if cut else -1
+            if neighbours[here, m] >= 0 and spent // 4096 < since[here, m]:
+                size = _depart(
+                    neighbours, ahead, table, until, since, state, m, rest, stamp, limits, nodes, keys, items, size
+                )
+                if size < 0:
+                    return -2
+    return -2 if limits[0] < 0 else -1

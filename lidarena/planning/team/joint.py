@@ -28,7 +28,7 @@ def _conflict_bits(apart: float, moves: NDArray[np.int64], reach: int) -> NDArra
 
 
 @kernel
-def _search(
+def _search(  # noqa: C901 - the loop of a search
     neighbours: NDArray[np.int32],
     cells: NDArray[np.int64],
     ahead: NDArray[np.int32],
@@ -70,7 +70,7 @@ def _search(
             return -2, -2, expanded
         row, col = cells[other, 0] - cells[one, 0], cells[other, 1] - cells[one, 1]
         near = abs(row) <= reach and abs(col) <= reach
-        for phase in range(3):  # go on as before, or let one of them rest from now on
+        for phase in range(3):  # go on, or let one of them rest from now on
             if phase != rests and (rests != 0 or (ahead[0, one] if phase == 1 else ahead[1, other]) != 0):
                 continue
             for a in range(1 if phase == 1 else 9):
@@ -93,18 +93,18 @@ def _search(
 
 @kernel
 def _trace(before: NDArray[np.int32], state: int, places: int, paths: NDArray[np.int32]) -> tuple[int, int]:
-    """Write the two paths (2, capacity) and return their steps: when each came to its goal for good; -2 without room."""
+    """Write the two paths (2, capacity); return when each came to its goal for good, -2 without room."""
     length = 0
     at = state
     while before[at] >= 0:
-        at = np.int64(before[at])
+        at = int(before[at])
         length += 1
     if length >= paths.shape[1]:
         return -2, -2
     at = state
     for t in range(length, -1, -1):
         paths[0, t], paths[1, t] = at // 3 // places, at // 3 % places
-        at = np.int64(before[at])
+        at = int(before[at])
     one, other = length, length
     while one > 0 and paths[0, one - 1] == paths[0, one]:
         one -= 1

@@ -43,9 +43,9 @@ def plan_team(
     meet; one at its goal stays there and blocks.
 
     ``independent_astar`` ignores the others (solved only if that happens to be free of conflicts).
-    ``prioritized_astar`` is the paper's planner. ``coordination`` keeps to the independent paths. ``joint_astar`` is the
-    joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan until
-    it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says that it could not.
+    ``prioritized_astar`` is the paper's planner. ``coordination`` keeps to the independent paths. ``joint_astar`` is
+    the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan
+    until it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says that it could not.
 
     Args:
         grid: (rows, cols) bool, True = blocked.
@@ -167,7 +167,8 @@ def _places(roads: Roads, cells: NDArray[np.int64], kind: str) -> NDArray[np.int
         if away[i, j] == 0:
             raise TeamError(f"robots {i} and {j} share the {kind} ({cells[i, 0]}, {cells[i, 1]})")
         raise TeamError(
-            f"the {kind}s of robots {i} and {j} overlap: they are {away[i, j]:.2f} cells apart, their radii need {roads.apart}"
+            f"the {kind}s of robots {i} and {j} overlap: they are {away[i, j]:.2f} cells apart,"
+            f" their radii need {roads.apart}"
         )
     return places
 
@@ -180,8 +181,8 @@ def _check_reachable(roads: Roads, ends: NDArray[np.int64], blocked: NDArray[np.
         points = roads_of(blocked, roads.connectivity, 0.0)
         if points.ahead(int(points.index[there]))[points.index[here]] < UNREACHABLE:
             raise TeamError(
-                f"robot {robot} cannot reach its goal {there} from {here}: with a radius of {roads.radius} cells it is wider"
-                " than every door on the way"
+                f"robot {robot} cannot reach its goal {there} from {here}: with a radius of {roads.radius} cells"
+                " it is wider than every door on the way"
             )
         raise TeamError(f"robot {robot} cannot reach its goal {there} from {here}: no free cells connect them")
 

@@ -1,8 +1,8 @@
 """Reservation tables: which moves from which place at which time would conflict with the paths planned so far.
 
-Bit ``m`` of ``table[place, t]`` says that move ``m`` from ``place`` in the step from ``t`` to ``t + 1`` is taken, by robots
-on their way; from time ``until[place]`` on no bit is set. Robots at their goals stay there: move ``m`` from ``place``
-is taken from time ``since[place, m]`` on.
+Bit ``m`` of ``table[place, t]`` says that move ``m`` from ``place`` in the step from ``t`` to ``t + 1`` is taken, by
+robots on their way; from time ``until[place]`` on no bit is set. Robots at their goals stay there: move ``m`` from
+``place`` is taken from time ``since[place, m]`` on.
 One look-up thus answers for all robots, discs and points alike; an entry costs as many writes as the robots' discs
 have cells.
 """

@@ -119,7 +119,8 @@ class Roads:
         cells: (n, 2) [row, column] of the places.
         index: (rows, cols) int32, a cell's place, -1 where the robot cannot stand.
         neighbours: (n, 9) int32, the place to which each of ``MOVES`` leads, -1 nowhere.
-        padded: ``index`` with a margin of -1, flat, in rows of ``stride``; ``at`` (n,) int32 are the places' positions in it.
+        padded: ``index`` with a margin of -1, flat, in rows of ``stride``; ``at`` (n,) int32 are the places'
+            positions in it.
         begins: Where each move's entries begin in ``entries``, see ``moves.footprints``.
         entries: The footprints.
         apart: Least distance of two robots [cells].
@@ -129,7 +130,7 @@ class Roads:
         self.connectivity, self.radius, self.apart = connectivity, radius, 2.0 * radius
         standing = ~_near_blocked(blocked, radius)
         self.cells = np.argwhere(standing)
-        self.index = np.full(blocked.shape, -1, np.int32)
+        self.index: NDArray[np.int32] = np.full(blocked.shape, -1, np.int32)
         self.index[standing] = np.arange(len(self.cells), dtype=np.int32)
         margin = math.ceil(self.apart) + 3
         padded = np.pad(self.index, margin, constant_values=-1)

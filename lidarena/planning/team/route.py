@@ -31,7 +31,7 @@ def free_from(table: NDArray[np.uint16], until: NDArray[np.int32], since: NDArra
 
 @inlined
 def at_least(cost: int, rest: int) -> int:
-    """A cost that ends after ``rest`` steps or later, small units at their most, lest they rank what is equally late."""
+    """A cost that ends at ``rest`` or later, small units at their most, lest they rank what is equally late."""
     return max(cost, rest * 4096 + 4095 if rest > 0 else 0)
 
 
@@ -53,7 +53,7 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
 
 
 @leaf
-def find_route(
+def find_route(  # noqa: C901 - the loop of a search
     neighbours: NDArray[np.int32],
     ahead: NDArray[np.int32],
     base: NDArray[np.int32],

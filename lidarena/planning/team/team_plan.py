@@ -15,8 +15,8 @@ class TeamPlan:
 
     Attributes:
         solved: Whether every robot reaches its goal and stays there, and no two come too close.
-        paths: For each robot (T, 2) int cells [row, column], one a time step, from its start to its goal, where it stays
-            for ever after; (0, 2) for a robot without a path. ``independent_astar`` returns its paths also where
+        paths: For each robot (T, 2) int cells [row, column], one a time step, from its start to its goal, where it
+            stays for ever after; (0, 2) for a robot without a path. ``independent_astar`` returns its paths also where
             they conflict.
         cost: Steps of all robots together until they stay at their goals: the cells that they traverse plus the steps
             that they wait (the paper's score, section 3.2); a diagonal counts as one. inf if a path is missing.

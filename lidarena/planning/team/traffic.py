@@ -171,10 +171,10 @@ def _replan(
     Returns:
         Steps saved; -1 if the old paths were kept.
     """
-    old = np.int64(0)
+    old = 0
     for k in range(len(group)):
         robot = group[k]
-        old += lengths[robot]
+        old += int(lengths[robot])
         kept_lengths[robot] = lengths[robot]
         for t in range(lengths[robot] + 1):
             kept_paths[robot, t] = paths[robot, t]
@@ -209,7 +209,7 @@ def _replan(
     )
     if planned == len(group):
         for k in range(len(group)):
-            old -= lengths[group[k]]
+            old -= int(lengths[group[k]])
         return old
     _clear_some(group[:planned], neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
     for k in range(len(group)):

@@ -1,7 +1,7 @@
 """Whether a plan is what it says: slow, short, and sharing nothing with the planners that it judges.
 
-For tests and benchmarks. Walls, moves and distances are computed here from their definitions, one pair and one step at a
-time, without the planners' tables, cells' numbers or kernels.
+For tests and benchmarks. Walls, moves and distances are computed here from their definitions, one pair and one step at
+a time, without the planners' tables, cells' numbers or kernels.
 """
 
 import itertools
