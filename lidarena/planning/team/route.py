@@ -53,7 +53,52 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
 
 
 @leaf
-def find_route(  # noqa: C901 - the loop of a search
+def _expand(
+    neighbours: NDArray[np.int32],
+    ahead: NDArray[np.int32],
+    base: NDArray[np.int32],
+    layer: NDArray[np.int32],
+    table: NDArray[np.uint16],
+    since: NDArray[np.int32],
+    last: int,
+    rest: int,
+    stamp: int,
+    state: int,
+    limits: NDArray[np.int64],
+    nodes: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    size: int,
+) -> int:
+    """Offer what the free moves from ``state`` lead to; return the open list's size.
+
+    Sets the sign of ``limits[0]`` where the bound was in the way. The other arguments are ``find_route``'s.
+    """
+    times = table.shape[1]
+    here, t = state // times, state % times
+    later, row = min(t + 1, last), min(t + 1, len(layer) - 1)
+    taken = int(table[here, t]) if t < last else 0
+    most = limits[0] if limits[0] >= 0 else ~limits[0]
+    for m in range(9):
+        there = int(neighbours[here, m])
+        if there < 0 or taken >> m & 1 or t >= since[here, m]:
+            continue
+        spent = int(nodes[state, 1]) + 4096 + (1 if m > 4 else 0) + base[there] + layer[row, there]
+        following = there * times + later
+        met = nodes[following, 0]
+        if met > stamp or (met == stamp and nodes[following, 1] <= spent):
+            continue
+        cost = at_least(spent + ahead[there], rest)
+        if cost > most:
+            limits[0] = ~most
+            continue
+        nodes[following, 0], nodes[following, 1], nodes[following, 2] = stamp, spent, state
+        size = push(keys, items, size, (cost << 31) - (spent ^ 4095), following)
+    return size
+
+
+@leaf
+def find_route(
     neighbours: NDArray[np.int32],
     ahead: NDArray[np.int32],
     base: NDArray[np.int32],
@@ -82,7 +127,8 @@ def find_route(  # noqa: C901 - the loop of a search
         last: Time at which the last of the other robots has come to rest, below the times of ``table``.
         ends: (2,) start and goal.
         limits: (4,) greatest cost; most states to expand; and, changed here, the stamp of the last search and the
-            number of states that were expanded.
+            number of states that were expanded. Where the greatest cost cut the search off, it comes back with its
+            bits inverted.
         nodes: (n * times, 3) stamp, cost so far and state before; kept between searches.
         keys: (m,) room for the open list.
         items: (m,) room for the open list.
@@ -103,7 +149,6 @@ def find_route(  # noqa: C901 - the loop of a search
     if cost > limits[0]:
         return -2
     size = push(keys, items, np.int64(0), cost << 31, start * times)
-    cut = False
     while size > 0:
         state = np.int64(items[0])
         size = pop(keys, items, size)
@@ -116,21 +161,7 @@ def find_route(  # noqa: C901 - the loop of a search
         limits[3] += 1
         if limits[3] > limits[1] or size + 9 > len(keys):
             return -2
-        later, row = min(t + 1, last), min(t + 1, len(layer) - 1)
-        taken = np.int64(table[here, t]) if t < last else np.int64(0)
-        for m in range(9):
-            there = np.int64(neighbours[here, m])
-            if there < 0 or taken >> m & 1 or t >= since[here, m]:
-                continue
-            spent = np.int64(nodes[state, 1]) + 4096 + (1 if m > 4 else 0) + base[there] + layer[row, there]
-            following = there * times + later
-            met = nodes[following, 0]
-            if met > stamp or (met == stamp and nodes[following, 1] <= spent):
-                continue
-            cost = at_least(spent + ahead[there], rest)
-            if cost > limits[0]:
-                cut = True
-                continue
-            nodes[following, 0], nodes[following, 1], nodes[following, 2] = stamp, spent, state
-            size = push(keys, items, size, (cost << 31) - (spent ^ 4095), following)
-    return -2 if cut else -1
+        size = _expand(
+            neighbours, ahead, base, layer, table, since, last, rest, stamp, state, limits, nodes, keys, items, size
+        )
+    return -2 if limits[0] < 0 else -1

@@ -36,8 +36,11 @@ def plan(problem, method, **options) -> TeamPlan:
     return plan_team(grid, starts, goals, method, connectivity, radius, **options)
 
 
+_TEAMS, _SIDES, _RADII = st.integers(1, 4), st.integers(2, 7), st.sampled_from([0.0, 0.0, 0.5])
+
+
 @st.composite
-def problems(draw, robots=st.integers(1, 4), sides=st.integers(2, 7), radii=st.sampled_from([0.0, 0.0, 0.5])):
+def problems(draw, robots=_TEAMS, sides=_SIDES, radii=_RADII):
     """Random grids, starts and goals; only problems that ``plan_team`` accepts."""
     rows, cols = draw(sides), draw(sides)
     wall = draw(st.lists(st.integers(0, 3), min_size=rows * cols, max_size=rows * cols))
@@ -68,7 +71,7 @@ def meet(a, b, c, d, apart):
     return nearest < max(apart - 1e-6, 1e-6)
 
 
-def brute_force(problem) -> float:
+def brute_force(problem) -> float:  # noqa: C901 - all of it in one place, to be read
     """The least sum of steps: Dijkstra over all robots' cells together and over who rests for good; inf if none."""
     grid, starts, goals, connectivity, radius = problem
     rows, cols = grid.shape
@@ -90,8 +93,10 @@ def brute_force(problem) -> float:
         here, rests = state
         if here == goal:
             return spent
-        for phase in itertools.product(*([r] if r or h != g else [False, True] for h, g, r in zip(here, goal, rests))):
-            choices = [[h] if p else list(reached(h)) for h, p in zip(here, phase)]
+        for phase in itertools.product(
+            *([r] if r or h != g else [False, True] for h, g, r in zip(here, goal, rests, strict=True))
+        ):
+            choices = [[h] if p else list(reached(h)) for h, p in zip(here, phase, strict=True)]
             price = phase.count(False)
             for there in itertools.product(*choices):
                 pairs = itertools.combinations(range(len(here)), 2)

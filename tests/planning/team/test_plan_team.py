@@ -41,7 +41,7 @@ def test_a_plan_never_collides_and_costs_at_least_the_bound(problem, method):
         assert not found.optimal
 
 
-@settings(max_examples=60, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=40, deadline=None, suppress_health_check=SLOW)
 @given(problems(robots=st.just(2), sides=st.integers(2, 4)))
 def test_the_optimum_of_two_robots_is_that_of_brute_force(problem):
     assume(len(problem.starts) == 2)
@@ -58,7 +58,7 @@ def test_the_optimum_of_two_robots_is_that_of_brute_force(problem):
     assert certified.lower_bound <= expected
 
 
-@settings(max_examples=25, deadline=None, suppress_health_check=SLOW)
+@settings(max_examples=12, deadline=None, suppress_health_check=SLOW)
 @given(problems(robots=st.just(3), sides=st.integers(2, 3)))
 def test_the_certified_optimum_of_three_robots_is_that_of_brute_force(problem):
     expected = brute_force(problem)
