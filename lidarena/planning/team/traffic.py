@@ -60,36 +60,14 @@ def _plan_in_order(
         limits[0] = (budget - after) * 4096 + 4095 if budget >= 0 else 2**31 - 1
         if timed:
             steps = find_route(
-                neighbours,
-                ahead[robot],
-                base,
-                layer,
-                table,
-                until,
-                since,
-                last,
-                ends[robot],
-                limits,
-                nodes,
-                keys,
-                items,
-                paths[robot],
-            )
+    neighbours, ahead[robot], base, layer, table, until, since, last, ends[robot], limits, nodes, keys, items,
+    paths[robot],
+)  # fmt: skip
         else:
             steps = find_quick_route(
-                neighbours,
-                ahead[robot],
-                table,
-                until,
-                since,
-                ends[robot],
-                delays[robot],
-                limits,
-                nodes,
-                keys,
-                items,
-                paths[robot],
-            )
+    neighbours, ahead[robot], table, until, since, ends[robot], delays[robot], limits, nodes, keys, items,
+    paths[robot],
+)  # fmt: skip
         if steps < 0:
             return k
         budget = budget - steps if budget >= 0 else budget
@@ -183,30 +161,9 @@ def _replan(
         placed[group[k]] = False
     _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
     planned = _plan_in_order(
-        group,
-        neighbours,
-        padded,
-        at,
-        begins,
-        entries,
-        ahead,
-        base,
-        layer,
-        table,
-        until,
-        since,
-        ends,
-        delays,
-        limits,
-        nodes,
-        keys,
-        items,
-        paths,
-        lengths,
-        placed,
-        timed,
-        old,
-    )
+    group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, delays, limits,
+    nodes, keys, items, paths, lengths, placed, timed, old,
+)  # fmt: skip
     if planned == len(group):
         for k in range(len(group)):
             old -= int(lengths[group[k]])

@@ -37,7 +37,7 @@ def test_cells_and_points_are_each_others_inverse():
 
 
 def test_bad_input_is_refused():
-    with pytest.raises(TeamError, match="resolution of 0.0 m"):
+    with pytest.raises(TeamError, match=r"resolution of 0\.0 m"):
         FloorGrid.of(ROOM, 0.0)
     with pytest.raises(TeamError, match=r"point \(40, 1\)"):
         FloorGrid.of(ROOM).cells([(40.0, 1.0)])
