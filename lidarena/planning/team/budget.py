@@ -24,6 +24,10 @@ class Budget:
         self._iterations -= 1
         return True
 
+    def left(self) -> float:
+        """Seconds left, not negative."""
+        return max(self._end - time.perf_counter(), 0.0)
+
     def spent(self) -> bool:
         """Whether the time is over."""
         return time.perf_counter() >= self._end

@@ -85,13 +85,13 @@ class ConflictBasedSearch:
     def __init__(self, traffic: Traffic, upper_bound: int | None = None) -> None:
         self._traffic = traffic
         self._upper = np.inf if upper_bound is None else upper_bound
+        self._lost = np.inf  # least bound of the nodes that were dropped for want of room
         self._numbers = itertools.count()
         others = max(len(traffic) - 1, 1)
         # small units must stay below a step, or a path would no longer be the shortest
         self._weight = np.int64(max((int(STEP) - traffic.capacity) // (traffic.capacity * others), 0))
         self._base = np.zeros(len(traffic.roads), np.int32)
         self._layer = np.zeros((traffic.capacity, len(traffic.roads)), np.int32)
-        traffic.limits[:2] = NO_BOUND
 
     def run(self, budget: Budget) -> CbsResult:
         """Search until the optimum is certified or the budget is spent."""
@@ -102,18 +102,17 @@ class ConflictBasedSearch:
         split_nodes = 0
         while queue and queue[0][0] < self._upper:
             if not budget.take():
-                return CbsResult(queue[0][0], split_nodes, False)
+                return CbsResult(int(min(queue[0][0], self._lost)), split_nodes, False)
             node = heapq.heappop(queue)[-1]
             children = self._expand(node)
             if not node.conflicts:
                 self._traffic.paths[:], self._traffic.lengths[:] = node.paths, node.lengths
-                return CbsResult(node.cost, split_nodes, True)
+                return CbsResult(int(min(node.cost, self._lost)), split_nodes, True)
             split_nodes += 1
             for child in children:
                 if child.cost < self._upper:
                     heapq.heappush(queue, self._entry(child))
-        bound = self._upper if np.isfinite(self._upper) else 2**30
-        return CbsResult(int(bound), split_nodes, False)
+        return CbsResult(int(min(self._upper, self._lost, 2**30)), split_nodes, False)
 
     def _entry(self, node: _Node) -> tuple[int, int, int, _Node]:
         return node.cost, len(node.conflicts), next(self._numbers), node
@@ -142,6 +141,9 @@ class ConflictBasedSearch:
         if self._weight:
             last = max([last, *(int(node.lengths[other]) for other in others if other != robot)])
         if last >= traffic.capacity:
+            self._lost = min(
+                self._lost, node.cost
+            )  # the robot's old path is a bound for the one that is not looked for
             return False
         layer = self._layer[: last + 1]
         presence = (roads.padded, roads.at, roads.begins, roads.entries)
@@ -151,6 +153,7 @@ class ConflictBasedSearch:
                 _add_presence(node.paths[other], node.lengths[other], *presence, self._weight, layer)
         for c in mine:
             forbid(c.moves, np.int64(c.time), c.forever, *tables)
+        traffic.limits[:2] = NO_BOUND
         steps = find_route(
             roads.neighbours,
             traffic.ahead[robot],
@@ -171,7 +174,7 @@ class ConflictBasedSearch:
             if other != robot and self._weight:
                 _add_presence(node.paths[other], node.lengths[other], *presence, -self._weight, layer)
         if steps == GAVE_UP:
-            raise MemoryError("the open list of the search in space and time is full")
+            self._lost = min(self._lost, node.cost)
         node.lengths[robot] = max(steps, 0)
         return steps >= 0
 

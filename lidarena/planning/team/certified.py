@@ -26,6 +26,7 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
         iterations: Greatest number of neighbourhoods, and of nodes; None = any.
         rng: For prioritized search.
     """
+    budget = Budget(seconds)
     order, placed, _ = find_order(traffic, Budget(seconds * _SHARE_OF_SEARCH, iterations), rng)
     known: int | None = None
     if placed == len(order):
@@ -35,10 +36,10 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
     everyone = np.arange(len(traffic))
     traffic.remove(everyone)
     share = _SHARE_OF_PAIR if len(traffic) == 2 else 1.0
-    found = ConflictBasedSearch(traffic, known).run(Budget(seconds * share, iterations))
+    found = ConflictBasedSearch(traffic, known).run(Budget(budget.left() * share, iterations))
     if len(traffic) == 2 and not found.found and found.lower_bound != known:
-        joint = plan_joint(traffic, seconds * (1.0 - share))
-        if joint.solved:
+        joint = plan_joint(traffic, budget.left())
+        if joint.solved or known is None:
             return joint
     if not found.found:
         traffic.paths[:], traffic.lengths[:] = paths, lengths
