@@ -8,6 +8,7 @@ the data folder, and left out where it is absent. Figures of others: CBSH2-RTC, 
 """
 
 import argparse
+import itertools
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -243,7 +244,7 @@ def solved(data: Path, count: int) -> None:
     for name in ("office", "unstructured"):
         blocked, allowed = floor(name)
         for robots in range(2, 7):
-            cases = list(conflicting(problems(blocked, 1.0, robots, count, 4, allowed)))
+            cases = list(itertools.islice(conflicting(problems(blocked, 1.0, robots, 40 * count, 4, allowed)), count))
             plans = [[solve(case, m, 0.1).plan for m in methods] for case in cases]
             both = [row for row in plans if row[0].solved and row[1].solved]
             cost = [np.mean([row[m].cost / row[0].lower_bound for row in both]) for m in range(3)]

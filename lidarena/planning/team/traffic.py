@@ -9,12 +9,12 @@ from lidarena.planning.team.interval_route import find_quick_route
 from lidarena.planning.team.reservations import clear, reserve
 from lidarena.planning.team.roads import STEP, UNREACHABLE, Roads
 from lidarena.planning.team.route import find_route
-from lidarena.world.kernels import leaf
+from lidarena.world.kernels import leaf, merged
 
 NO_BOUND = np.int64(2**31 - 1)
 
 
-@leaf
+@merged
 def _plan_in_order(
     order: NDArray[np.int64],
     neighbours: NDArray[np.int32],
@@ -60,14 +60,14 @@ def _plan_in_order(
         limits[0] = (budget - after) * 4096 + 4095 if budget >= 0 else 2**31 - 1
         if timed:
             steps = find_route(
-    neighbours, ahead[robot], base, layer, table, until, since, last, ends[robot], limits, nodes, keys, items,
-    paths[robot],
-)  # fmt: skip
+                neighbours, ahead[robot], base, layer, table, until, since, last, ends[robot],
+                limits, nodes, keys, items, paths[robot],
+            )  # fmt: skip
         else:
             steps = find_quick_route(
-    neighbours, ahead[robot], table, until, since, ends[robot], delays[robot], limits, nodes, keys, items,
-    paths[robot],
-)  # fmt: skip
+                neighbours, ahead[robot], table, until, since, ends[robot], delays[robot],
+                limits, nodes, keys, items, paths[robot],
+            )  # fmt: skip
         if steps < 0:
             return k
         budget = budget - steps if budget >= 0 else budget
@@ -116,7 +116,7 @@ def _clear_some(
 
 
 @leaf
-def _replan(
+def _plan_group(
     group: NDArray[np.int64],
     neighbours: NDArray[np.int32],
     padded: NDArray[np.int32],
@@ -139,35 +139,41 @@ def _replan(
     lengths: NDArray[np.int64],
     placed: NDArray[np.bool_],
     timed: bool,
+    budget: int,
     kept_paths: NDArray[np.int32],
     kept_lengths: NDArray[np.int64],
+    anew: bool,
 ) -> int:
-    """Plan the robots of ``group`` anew in this order; keep the old paths unless the sum of steps is no larger.
+    """Plan robots; where ``anew``, they are placed, and keep their old paths unless the sum of steps is no larger.
 
-    ``kept_paths`` and ``kept_lengths`` have ``paths``' and ``lengths``' shapes; they are scratch.
+    One kernel for both, since the searches in it take long to compile. ``kept_paths`` and ``kept_lengths`` have
+    ``paths``' and ``lengths``' shapes; they are scratch.
 
     Returns:
-        Steps saved; -1 if the old paths were kept.
+        How many robots were placed before one failed; where ``anew`` the steps saved, -1 if the old paths were kept.
     """
-    old = 0
-    for k in range(len(group)):
-        robot = group[k]
-        old += int(lengths[robot])
-        kept_lengths[robot] = lengths[robot]
-        for t in range(lengths[robot] + 1):
-            kept_paths[robot, t] = paths[robot, t]
-    _clear_some(group, neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
-    for k in range(len(group)):
-        placed[group[k]] = False
-    _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
+    if anew:
+        budget = 0
+        for k in range(len(group)):
+            robot = group[k]
+            budget += int(lengths[robot])
+            kept_lengths[robot] = lengths[robot]
+            for t in range(lengths[robot] + 1):
+                kept_paths[robot, t] = paths[robot, t]
+        _clear_some(group, neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
+        for k in range(len(group)):
+            placed[group[k]] = False
+        _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
     planned = _plan_in_order(
-    group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, delays, limits,
-    nodes, keys, items, paths, lengths, placed, timed, old,
-)  # fmt: skip
+        group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, delays,
+        limits, nodes, keys, items, paths, lengths, placed, timed, budget,
+    )  # fmt: skip
+    if not anew:
+        return planned
     if planned == len(group):
         for k in range(len(group)):
-            old -= int(lengths[group[k]])
-        return old
+            budget -= int(lengths[group[k]])
+        return budget
     _clear_some(group[:planned], neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
     for k in range(len(group)):
         robot = group[k]
@@ -281,7 +287,7 @@ class Traffic:
         Returns:
             How many were placed before one failed.
         """
-        return _plan_in_order(order, *self._arrays, budget)
+        return _plan_group(order, *self._arrays, budget, self._kept_paths, self._kept_lengths, False)
 
     def replan(self, group: NDArray[np.int64]) -> int:
         """Plan robots, all of them placed, anew in this order; the old paths stay unless the sum is no larger.
@@ -289,7 +295,7 @@ class Traffic:
         Returns:
             Steps saved; -1 if the old paths were kept.
         """
-        saved: int = _replan(group, *self._arrays, self._kept_paths, self._kept_lengths)
+        saved: int = _plan_group(group, *self._arrays, -1, self._kept_paths, self._kept_lengths, True)
         return saved
 
     def remove(self, robots: NDArray[np.int64]) -> None:
