@@ -27,6 +27,14 @@ class PolicyFileError(Refusal):
     """A policy file that is torn, of another environment, or not of this format."""
 
 
+class ScenarioError(Refusal):
+    """A scenario file that is torn, of another map, or has too few robots."""
+
+
+class TeamError(Refusal):
+    """Starts and goals that no team can have, or options of a team's planner that do not exist."""
+
+
 def suggest(word: str, allowed: Iterable[str]) -> str:
     """Return the end of a refusal: what is allowed, and the nearest right spelling of ``word``.
 

@@ -13,6 +13,7 @@ from tests.world.corridors import CELL, count_parts, free_space, share_swept_by_
 from tests.world.shared_data import DATA, needs_data
 
 CIRCUITS = {"env1": (5.0, 5.6), "env2": (7.5, 7.5), "env3": (8.9, 10.2), "env4": (5.8, 8.8)}
+FOR_TEAMS = ["office", "unstructured", "passing", "blocked"]
 SHIPPED = ["turtlebot3_world", "aws_small_house", "willow", "willow_lobby"]
 
 
@@ -22,7 +23,7 @@ def plans() -> dict[str, Floorplan]:
 
 
 def test_the_names() -> None:
-    assert names() == [*CIRCUITS, *SHIPPED]
+    assert names() == [*CIRCUITS, *FOR_TEAMS, *SHIPPED]
 
 
 @pytest.mark.parametrize(("name", "size"), CIRCUITS.items())
@@ -82,7 +83,7 @@ def test_circuits_have_loops_to_close(plans: dict[str, Floorplan], name: str, is
     assert count_parts(walls) == 1 + islands
 
 
-@pytest.mark.parametrize("name", [*CIRCUITS, *SHIPPED])
+@pytest.mark.parametrize("name", [*CIRCUITS, *FOR_TEAMS, *SHIPPED])
 def test_starts_are_roomy_and_face_open_space(plans: dict[str, Floorplan], name: str) -> None:
     plan = plans[name]
     x, y, theta = plan.start

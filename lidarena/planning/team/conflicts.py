@@ -1,0 +1,112 @@
+"""Which robots of a team come too close to each other, when, and who stands in whose way."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.planning.team.moves import too_close
+from lidarena.world.kernels import kernel, leaf
+
+
+@leaf
+def first_conflict(
+    cells: NDArray[np.int64],
+    one: NDArray[np.int32],
+    steps_one: int,
+    other: NDArray[np.int32],
+    steps_other: int,
+    apart: float,
+    begin: int,
+) -> int:
+    """The first step from ``begin`` on in which two robots conflict; -1 if they never do.
+
+    Args:
+        cells: (n, 2) [row, column] of the places.
+        one: Places of a path, one a time step; it rests at the place of index ``steps_one``.
+        steps_one: Steps of that path.
+        other: As ``one``.
+        steps_other: As ``steps_one``.
+        apart: Sum of the two radii [cells].
+        begin: First step to look at.
+    """
+    for t in range(begin, max(steps_one, steps_other, begin + 1)):
+        a, b = one[min(t, steps_one)], other[min(t, steps_other)]
+        c, d = one[min(t + 1, steps_one)], other[min(t + 1, steps_other)]
+        row, col = float(cells[b, 0] - cells[a, 0]), float(cells[b, 1] - cells[a, 1])
+        rows = float(cells[d, 0] - cells[c, 0]) - row
+        cols = float(cells[d, 1] - cells[c, 1]) - col
+        if too_close(row, col, rows, cols, apart):
+            return t
+    return -1
+
+
+@kernel
+def conflict_times(
+    cells: NDArray[np.int64], paths: NDArray[np.int32], lengths: NDArray[np.int64], apart: float
+) -> NDArray[np.int64]:
+    """Each pair's first step in which it conflicts, (k, k), symmetric; -1 where it never does.
+
+    Args:
+        cells: (n, 2) [row, column] of the places.
+        paths: (k, capacity) places, one a time step.
+        lengths: (k,) steps of each path.
+        apart: Sum of two radii [cells].
+    """
+    team = len(lengths)
+    times = np.full((team, team), -1, np.int64)
+    for i in range(team):
+        for j in range(i):
+            t = first_conflict(cells, paths[i], lengths[i], paths[j], lengths[j], apart, np.int64(0))
+            times[i, j] = t
+            times[j, i] = t
+    return times
+
+
+@leaf
+def find_hinderers(
+    robot: int,
+    begin: int,
+    cells: NDArray[np.int64],
+    neighbours: NDArray[np.int32],
+    ahead: NDArray[np.int32],
+    paths: NDArray[np.int32],
+    lengths: NDArray[np.int64],
+    apart: float,
+    choices: NDArray[np.int64],
+    hinders: NDArray[np.bool_],
+) -> None:
+    """Mark the robots with which one would conflict if from time ``begin`` on it took a shortest way to its goal.
+
+    Args:
+        robot: The one.
+        begin: When it leaves its path, at most its length.
+        cells: (n, 2) of the places.
+        neighbours: (n, 9) where moves lead.
+        ahead: (n,) what the rest of the way costs it.
+        paths: (k, capacity) of the team.
+        lengths: (k,) of the team.
+        apart: Sum of two radii [cells].
+        choices: (m,) random numbers that choose among equally short ways.
+        hinders: (k,) gets True for the robots.
+    """
+    here, t = np.int64(paths[robot, begin]), begin
+    final = np.int64(0)
+    for other in range(len(lengths)):
+        final = max(final, lengths[other])
+    while ahead[here] > 0 or t < final:
+        following = here
+        turn = choices[t % len(choices)]
+        for k in range(8):
+            there = np.int64(neighbours[here, 1 + (k + turn) % 8])
+            if there >= 0 and ahead[there] >> 12 < ahead[here] >> 12:
+                following = there
+                break
+        for other in range(len(lengths)):
+            a = paths[other, min(t, lengths[other])]
+            b = paths[other, min(t + 1, lengths[other])]
+            row, col = float(cells[a, 0] - cells[here, 0]), float(cells[a, 1] - cells[here, 1])
+            rows = float(cells[b, 0] - cells[following, 0]) - row
+            cols = float(cells[b, 1] - cells[following, 1]) - col
+            if other != robot and too_close(row, col, rows, cols, apart):
+                hinders[other] = True
+        here = following
+        t += 1

@@ -1,0 +1,174 @@
+"""The quickest way of one robot past everything that is reserved, by safe intervals (SIPP, Phillips & Likhachev 2011).
+
+Where time alone is to be saved, a robot that reaches a place earlier can do all that one which comes later can, as long
+as it may wait there. So a state is a place in a stretch of time during which nobody comes too close, not a place at a
+time: a robot that has to wait a hundred steps for another costs one state, not a hundred times the whole map.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.planning.team.open_list import pop, push
+from lidarena.planning.team.route import at_least, free_from
+from lidarena.world.kernels import leaf
+
+
+@leaf
+def _begin(table: NDArray[np.uint16], until: NDArray[np.int32], place: int, t: int) -> int:
+    """When the stretch of waiting in ``place`` begins that ``t`` belongs to."""
+    begin = min(t, int(until[place]))
+    while begin > 0 and not table[place, begin - 1] & 1:
+        begin -= 1
+    return begin
+
+
+@leaf
+def _end(table: NDArray[np.uint16], until: NDArray[np.int32], since: NDArray[np.int32], place: int, t: int) -> int:
+    """The last time that a robot in ``place`` at ``t`` can be there without a move; 2**30 = for ever."""
+    final = int(since[place, 0])
+    for end in range(t, min(int(until[place]), final)):
+        if table[place, end] & 1:
+            return end
+    return max(final, t)
+
+
+@leaf
+def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.int32]) -> int:
+    """Write the places that lead to ``state`` into ``path``, waits included; return the number of steps, or GAVE_UP."""
+    length = int(nodes[state, 1]) // 4096
+    if length >= len(path):
+        return -2
+    at, end = state, length
+    while at >= 0:
+        arrival = int(nodes[at, 1]) // 4096
+        if nodes[at, 2] < 0:
+            arrival = 0  # it starts there, if wanted with a delay
+        for t in range(arrival, end + 1):
+            path[t] = at // times
+        end = arrival - 1
+        at = int(nodes[at, 2])
+    return length
+
+
+@leaf
+def _offer(
+    nodes: NDArray[np.int32],
+    stamp: int,
+    state: int,
+    spent: int,
+    before: int,
+    cost: int,
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    size: int,
+) -> int:
+    """Put a state on the open list unless it was reached as cheaply before; return the list's size."""
+    met = nodes[state, 0]
+    if met > stamp or (met == stamp and nodes[state, 1] <= spent):
+        return size
+    nodes[state, 0], nodes[state, 1], nodes[state, 2] = stamp, spent, before
+    return push(keys, items, size, (cost << 31) - (spent ^ 4095), state)
+
+
+@leaf
+def _depart(
+    neighbours: NDArray[np.int32],
+    ahead: NDArray[np.int32],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    state: int,
+    m: int,
+    rest: int,
+    stamp: int,
+    limits: NDArray[np.int64],
+    nodes: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    size: int,
+) -> int:
+    """Offer what move ``m`` from ``state`` leads to: for each stretch of time there the first departure into it.
+
+    Returns:
+        The open list's size, -1 when it is full; sets the sign of ``limits[0]`` where the bound was in the way.
+    """
+    times = table.shape[1]
+    here, spent = state // times, int(nodes[state, 1])
+    there, t = int(neighbours[here, m]), spent // 4096
+    small = (spent & 4095) + (1 if m > 4 else 0)
+    most = limits[0] if limits[0] >= 0 else ~limits[0]
+    while t < since[here, m]:
+        later = t + 1
+        if t >= until[here] or not table[here, t] >> m & 1:
+            cost = at_least(later * 4096 + small + ahead[there], rest)
+            if cost > most:
+                limits[0] = ~most
+                return size
+            if size + 1 >= len(keys):
+                return -1
+            following = there * times + _begin(table, until, there, later)
+            size = _offer(nodes, stamp, following, later * 4096 + small, state, cost, keys, items, size)
+            later = max(_end(table, until, since, there, later), later)
+            if later >= 2**30:
+                return size
+        while t < later and t < since[here, 0] and (t >= until[here] or not table[here, t] & 1):
+            t += 1
+        if t < later:
+            return size
+    return size
+
+
+@leaf
+def find_quick_route(
+    neighbours: NDArray[np.int32],
+    ahead: NDArray[np.int32],
+    table: NDArray[np.uint16],
+    until: NDArray[np.int32],
+    since: NDArray[np.int32],
+    ends: NDArray[np.int64],
+    delay: int,
+    limits: NDArray[np.int64],
+    nodes: NDArray[np.int32],
+    keys: NDArray[np.int64],
+    items: NDArray[np.int32],
+    path: NDArray[np.int32],
+) -> int:
+    """Find the way from ``ends[0]`` to ``ends[1]`` with the fewest steps, among those the fewest diagonals.
+
+    Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins. The
+    robot leaves its start at ``delay`` at the earliest, unless somebody comes too close there before. Where the
+    greatest cost cut the search off, ``limits[0]`` comes back with its bits inverted.
+    """
+    times = table.shape[1]
+    start, goal = ends[0], ends[1]
+    stamp = limits[2] + 2
+    limits[2], limits[3] = stamp, 0
+    rest = free_from(table, until, since, goal)
+    if rest < 0 or ahead[start] >= 2**30:
+        return -1
+    delay = min(delay, _end(table, until, since, start, np.int64(0)))
+    cost = at_least(delay * 4096 + ahead[start], rest)
+    if cost > limits[0]:
+        return -2
+    size = _offer(nodes, stamp, start * times, delay * 4096, np.int64(-1), cost, keys, items, np.int64(0))
+    while size > 0:
+        state = int(items[0])
+        size = pop(keys, items, size)
+        if nodes[state, 0] > stamp:
+            continue
+        nodes[state, 0] = stamp + 1
+        here = state // times
+        if here == goal and state % times == rest:
+            return _trace(nodes, state, times, path)
+        limits[3] += 1
+        if limits[3] > limits[1]:
+            return -2
+        spent = int(nodes[state, 1])
+        for m in range(1, 9):
+            if neighbours[here, m] >= 0 and spent // 4096 < since[here, m]:
+                size = _depart(
+                    neighbours, ahead, table, until, since, state, m, rest, stamp, limits, nodes, keys, items, size
+                )
+                if size < 0:
+                    return -2
+    return -2 if limits[0] < 0 else -1

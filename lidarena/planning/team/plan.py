@@ -1,0 +1,209 @@
+"""One call for every planner of teams: ``plan_team`` on a bare array."""
+
+from typing import Literal, get_args
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.certified import plan_certified
+from lidarena.planning.team.coordination import plan_coordination
+from lidarena.planning.team.deviation import DeviationCosts
+from lidarena.planning.team.joint import plan_joint
+from lidarena.planning.team.prioritized import plan_independent, plan_prioritized
+from lidarena.planning.team.roads import STEP, UNREACHABLE, Roads, roads_of
+from lidarena.planning.team.search import plan_search
+from lidarena.planning.team.team_plan import TeamPlan
+from lidarena.planning.team.traffic import Traffic
+from lidarena.world.refusals import TeamError, suggest
+
+Method = Literal["independent_astar", "prioritized_astar", "coordination", "joint_astar", "prioritized_search", "cbs"]
+MAX_CELL_COST = 64.0
+
+
+def plan_team(
+    grid: ArrayLike,
+    starts: ArrayLike,
+    goals: ArrayLike,
+    method: Method = "prioritized_search",
+    connectivity: int = 8,
+    radius: float = 0.0,
+    time_limit: float = 1.0,
+    *,
+    seed: int = 0,
+    iterations: int | None = None,
+    cell_costs: ArrayLike | None = None,
+    deviation: ArrayLike | None = None,
+) -> TeamPlan:
+    """Plan paths on which a team of disc robots reaches its goals without touching walls or each other.
+
+    In a time step a robot waits or moves to a neighbouring cell, in a straight line; a diagonal takes one step too and
+    cuts no corner. The cost is the number of steps until every robot stays at its goal: the paper's score, cells
+    traversed plus steps waited. Robots conflict if at any time of a step their centres are closer than two radii, or
+    meet; one at its goal stays there and blocks.
+
+    ``independent_astar`` ignores the others (solved only if that happens to be free of conflicts).
+    ``prioritized_astar`` is the paper's planner. ``coordination`` keeps to the independent paths. ``joint_astar`` is
+    the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan
+    until it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says that it could not.
+
+    Args:
+        grid: (rows, cols) bool, True = blocked.
+        starts: (k, 2) int [row, column].
+        goals: (k, 2) int [row, column].
+        method: See above.
+        connectivity: 4 or 8 neighbours.
+        radius: Of every robot, in cells; 0 = points.
+        time_limit: Seconds that ``prioritized_search`` and ``cbs`` may take (``joint_astar``: a million states each).
+        seed: Of the random choices of ``prioritized_search`` and ``cbs``.
+        iterations: Greatest number of neighbourhoods that are planned anew, of orders and of nodes; with it and a
+            ``time_limit`` of infinity, the same input gives the same plan on every machine.
+        cell_costs: (rows, cols) what being in a cell for a step costs besides the step itself, the paper's P(occ) in
+            steps, 0 to 64; for ``independent_astar``, ``prioritized_astar`` and ``prioritized_search``.
+        deviation: (m, 2) distance in cells and cost in steps of being so near to where a robot with priority is planned
+            to be, the paper's P_t; for ``prioritized_astar``.
+
+    Raises:
+        TeamError: A start or goal is outside of the grid, in a wall or too near to one, shared or overlapping, a goal
+            cannot be reached, there are more starts than goals or the reverse, or an option is out of range.
+    """
+    _check_options(method, connectivity, radius, time_limit, iterations)
+    budget = Budget(time_limit, iterations)
+    blocked = _checked_grid(grid)
+    first, final = _checked_cells(starts, goals, blocked)
+    if method == "joint_astar" and len(first) != 2:
+        raise TeamError(f"method 'joint_astar' plans 2 robots, not {len(first)}; 'cbs' certifies the optimum of more")
+    roads = roads_of(blocked, connectivity, float(radius))
+    ends = np.stack([_places(roads, first, "start"), _places(roads, final, "goal")], axis=1)
+    surcharge = _surcharge(roads, cell_costs, method)
+    strays = _deviation(deviation, method)
+    _check_reachable(roads, ends, blocked)
+    traffic = Traffic(roads, ends, surcharge, timed=strays is not None)
+    plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), strays)
+    traffic.close()
+    return plan
+
+
+def _plan(
+    traffic: Traffic,
+    method: Method,
+    budget: Budget,
+    time_limit: float,
+    iterations: int | None,
+    rng: np.random.Generator,
+    strays: DeviationCosts | None,
+) -> TeamPlan:
+    match method:
+        case "independent_astar":
+            return plan_independent(traffic)
+        case "prioritized_astar":
+            return plan_prioritized(traffic, strays)
+        case "coordination":
+            return plan_coordination(traffic)
+        case "joint_astar":
+            return plan_joint(traffic, time_limit)
+        case "prioritized_search":
+            return plan_search(traffic, budget, rng)
+        case "cbs":
+            return plan_certified(traffic, time_limit, iterations, rng)
+
+
+def _check_options(method: str, connectivity: int, radius: float, time_limit: float, iterations: int | None) -> None:
+    if method not in get_args(Method):
+        raise TeamError(f"there is no method {method!r}{suggest(str(method), get_args(Method))}")
+    if connectivity not in (4, 8):
+        raise TeamError(f"connectivity {connectivity!r} is not possible; 4 or 8 neighbours are")
+    if not 0.0 <= radius <= 100.0:
+        raise TeamError(f"a radius of {radius} cells is not possible; 0 to 100 is allowed")
+    if not time_limit > 0.0:
+        raise TeamError(f"a time limit of {time_limit} s is not possible; a positive number is needed")
+    if iterations is not None and iterations < 0:
+        raise TeamError(f"{iterations} iterations are not possible; 0 or more are")
+
+
+def _checked_grid(grid: ArrayLike) -> NDArray[np.bool_]:
+    blocked = np.asarray(grid)
+    if blocked.ndim != 2 or blocked.size == 0:
+        raise TeamError(f"the grid has shape {blocked.shape}; (rows, columns) with at least one cell is needed")
+    if blocked.dtype != np.bool_ and not np.isin(blocked, (0, 1)).all():
+        raise TeamError("the grid must be bool, True for blocked cells; it holds other values than 0 and 1")
+    return np.ascontiguousarray(blocked, np.bool_)
+
+
+def _checked_cells(
+    starts: ArrayLike, goals: ArrayLike, blocked: NDArray[np.bool_]
+) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+    cells = []
+    for kind, given in (("start", starts), ("goal", goals)):
+        array = np.asarray(given)
+        if array.ndim != 2 or array.shape[1] != 2 or not len(array) or not np.issubdtype(array.dtype, np.integer):
+            raise TeamError(
+                f"the {kind}s have shape {array.shape} and type {array.dtype}; whole numbers (robots, 2) are needed"
+            )
+        cells.append(array.astype(np.int64))
+        for robot, (row, col) in enumerate(array):
+            if not (0 <= row < blocked.shape[0] and 0 <= col < blocked.shape[1]):
+                raise TeamError(
+                    f"the {kind} of robot {robot} at ({row}, {col}) lies outside of the grid of shape {blocked.shape}"
+                )
+            if blocked[row, col]:
+                raise TeamError(f"the {kind} of robot {robot} at ({row}, {col}) is in a wall")
+    if len(cells[0]) != len(cells[1]):
+        raise TeamError(f"there are {len(cells[0])} starts for {len(cells[1])} goals; every robot needs one of each")
+    return cells[0], cells[1]
+
+
+def _places(roads: Roads, cells: NDArray[np.int64], kind: str) -> NDArray[np.int64]:
+    """Places of the robots' starts or goals; refused where a disc touches a wall or another disc."""
+    places = roads.index[cells[:, 0], cells[:, 1]].astype(np.int64)
+    for robot in np.flatnonzero(places < 0):
+        row, col = cells[robot]
+        raise TeamError(
+            f"the {kind} of robot {robot} at ({row}, {col}) is nearer to a wall than its radius of {roads.radius} cells"
+        )
+    away = np.hypot(*(cells[:, None] - cells[None, :]).transpose(2, 0, 1))
+    near = np.triu((away < roads.apart - 1e-9) | (away == 0), 1)
+    for i, j in np.argwhere(near):
+        if away[i, j] == 0:
+            raise TeamError(f"robots {i} and {j} share the {kind} ({cells[i, 0]}, {cells[i, 1]})")
+        raise TeamError(
+            f"the {kind}s of robots {i} and {j} overlap: they are {away[i, j]:.2f} cells apart,"
+            f" their radii need {roads.apart}"
+        )
+    return places
+
+
+def _check_reachable(roads: Roads, ends: NDArray[np.int64], blocked: NDArray[np.bool_]) -> None:
+    for robot, (start, goal) in enumerate(ends):
+        if roads.ahead(int(goal))[start] < UNREACHABLE:
+            continue
+        here, there = (tuple(int(x) for x in roads.cells[place]) for place in (start, goal))
+        points = roads_of(blocked, roads.connectivity, 0.0)
+        if points.ahead(int(points.index[there]))[points.index[here]] < UNREACHABLE:
+            raise TeamError(
+                f"robot {robot} cannot reach its goal {there} from {here}: with a radius of {roads.radius} cells"
+                " it is wider than every door on the way"
+            )
+        raise TeamError(f"robot {robot} cannot reach its goal {there} from {here}: no free cells connect them")
+
+
+def _surcharge(roads: Roads, cell_costs: ArrayLike | None, method: str) -> NDArray[np.int32] | None:
+    if cell_costs is None:
+        return None
+    if method not in ("independent_astar", "prioritized_astar", "prioritized_search"):
+        raise TeamError(f"method {method!r} counts steps alone and takes no cell_costs")
+    costs = np.asarray(cell_costs, np.float64)
+    if costs.shape != roads.index.shape:
+        raise TeamError(f"cell_costs have shape {costs.shape}; the grid has {roads.index.shape}")
+    values = costs[roads.cells[:, 0], roads.cells[:, 1]]
+    if not ((values >= 0) & (values <= MAX_CELL_COST)).all():
+        raise TeamError(f"cell_costs must be 0 to {MAX_CELL_COST} steps where robots can stand")
+    return np.round(values * int(STEP)).astype(np.int32)
+
+
+def _deviation(deviation: ArrayLike | None, method: str) -> DeviationCosts | None:
+    if deviation is None:
+        return None
+    if method != "prioritized_astar":
+        raise TeamError(f"method {method!r} takes no deviation model; 'prioritized_astar' does")
+    return DeviationCosts(deviation)

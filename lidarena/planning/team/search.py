@@ -1,0 +1,70 @@
+"""Prioritized planning that searches for its order, and then repairs the plan.
+
+A robot that finds no way moves to the front and the team is planned again (failure-driven promotion; two or three
+rounds nearly always suffice); if that comes back to an order that was tried, the next one is random. What was found is
+improved by large-neighbourhood repair.
+
+Some problems no order of priority solves: two robots that meet half-way between them and the only place to dodge. So
+the robots of a random order, some of them, first wait at their starts.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.prioritized import longest_first
+from lidarena.planning.team.repair import Repair
+from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
+from lidarena.planning.team.traffic import Traffic
+
+PATIENCE = 300
+"""Neighbourhoods without a gain after which a plan counts as settled; large teams have more of them."""
+_PATIENCE_A_ROBOT = 4
+_DELAYED = 0.5  # share of the robots of a random order that wait at their starts
+
+
+def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tuple[NDArray[np.int64], int, int]:
+    """Plan a team with failure-driven promotion.
+
+    Args:
+        traffic: The team, nobody placed; afterwards everyone, or as many as the last order let through.
+        budget: Time and orders left; the first order is always tried.
+        rng: For the orders after one that comes back.
+
+    Returns:
+        The last order; how many of its robots were placed; how many orders were tried.
+    """
+    order, tried = longest_first(traffic), 0
+    seen = set()
+    while True:
+        tried += 1
+        placed = traffic.plan(order)
+        traffic.delays[:] = 0
+        if placed == len(order) or len(order) == 1 or not budget.take():
+            return order, placed, tried
+        seen.add(order.tobytes())
+        traffic.remove(order[:placed])
+        failed = order[placed]
+        order = np.concatenate([[failed], order[order != failed]])
+        if order.tobytes() in seen:
+            order = rng.permutation(order)
+            late = rng.random(len(order)) < _DELAYED
+            traffic.delays[:] = np.where(late, rng.integers(1, traffic.alone.max() + 2, len(order)), 0)
+
+
+def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> TeamPlan:
+    """Promotion, then repair, within a budget."""
+    order, placed, tried = find_order(traffic, budget, rng)
+    if placed < len(order):
+        message = (
+            f"Robot {order[placed]} found no way past the robots before it in the last of {tried} orders of priority"
+            f" (failure-driven promotion, then random orders and delays)."
+        )
+        return failed_plan(traffic, message, order)
+    first = traffic.cost()
+    neighbourhoods = Repair(traffic, rng).run(budget, PATIENCE + _PATIENCE_A_ROBOT * len(traffic))
+    message = (
+        f"Solved by order {tried} at cost {first}; {neighbourhoods} neighbourhoods were planned anew,"
+        f" which saved {first - traffic.cost()} steps."
+    )
+    return solved_plan(traffic, message, order=order)
