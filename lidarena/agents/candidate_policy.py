@@ -14,7 +14,8 @@ class CandidateScores(nn.Module):
     """Scores of candidates, and a summary of them for the critic.
 
     A candidate is a row of features; the first one says whether it is there (1) or not (0). Rows are encoded one by
-    one, and scored by their code beside the mean code of all that are there (deep sets, Zaheer et al. 2017).
+    one, and scored by their code beside the mean code of all that are there (deep sets, Zaheer et al. 2017), to which a
+    weighted sum of the features themselves is added: what is plain is learned soon.
 
     Args:
         candidates: Rows.
@@ -32,6 +33,7 @@ class CandidateScores(nn.Module):
         self.encoder = nn.Sequential(*layers)
         code = widths[-1] if widths else features
         self.scorer = nn.Sequential(nn.Linear(2 * code, code), activation(), nn.Linear(code, 1))
+        self.plain = nn.Linear(features, 1, bias=False)
         self.critic = nn.Sequential(nn.Linear(2 * code, code), activation())
         self.latent_dim_pi, self.latent_dim_vf = candidates, code
 
@@ -43,8 +45,10 @@ class CandidateScores(nn.Module):
         """Logits; those of candidates that are not there are out of reach."""
         codes, there, mean = self._encode(flat)
         beside = mean.unsqueeze(1).expand_as(codes)
-        scores: torch.Tensor = self.scorer(torch.cat([codes, beside], dim=2)).squeeze(2)
-        return scores.masked_fill(~there, -1e9)
+        scores: torch.Tensor = self.scorer(torch.cat([codes, beside], dim=2)) + self.plain(
+            flat.reshape(-1, *self._shape)
+        )
+        return scores.squeeze(2).masked_fill(~there, -1e9)
 
     def forward_critic(self, flat: torch.Tensor) -> torch.Tensor:
         """Mean and largest codes, condensed."""
@@ -82,5 +86,6 @@ class CandidatePolicy(ActorCriticPolicy):
         scores: Any = self.mlp_extractor
         with torch.no_grad():
             scores.scorer[-1].weight.mul_(_SHARPNESS)
+            scores.plain.weight.mul_(_SHARPNESS)
         optimizer: Any = self.optimizer_class
         self.optimizer = optimizer(self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs)

@@ -15,7 +15,7 @@ CANDIDATES = 10
 """Places that are described: the nearest frontiers by way, and the start."""
 NAMES = (
     "there",  # 1, or 0 where there is no such candidate and all the rest is 0
-    "way",  # length of the way to it / 10 m
+    "way",  # length of the way to it / 3 m
     "nearest",  # 1 for the nearest
     "size",  # / 3 m
     "small",  # 1 below explore_lite's 0.5 m
@@ -23,9 +23,9 @@ NAMES = (
     "unknown",  # share of unknown cells within 1.5 m of it
     "pursued",  # 1 for the one that is driven to
     "apart",  # straight distance to the nearest other candidate / 3 m
-    "remote",  # mean straight distance to the others / 10 m
+    "remote",  # mean straight distance to the others / 3 m
     "age",  # how long ago the robot came within 2 m of it for the first time / 100 s, 0 if never
-    "home",  # straight distance from where the robot started / 10 m
+    "home",  # straight distance from where the robot started / 3 m
     "revisit",  # 1 for the start itself, which is known already: going there closes a loop
     "uncertainty",  # log10 of D-optimality / 1e-4, the same for all
 )
@@ -83,10 +83,10 @@ def describe(
         turn = abs(math.remainder(math.atan2(leg[1], leg[0]) - pose[2], 2.0 * math.pi))
         been = np.flatnonzero(np.hypot(*(track - goals[i]).T) < _BEEN)
         features[i] = (
-            1.0, min(lengths[candidate.cell], 60.0) / 10.0, float(i == 0), candidate.size / 3.0,
+            1.0, min(lengths[candidate.cell], 60.0) / 3.0, float(i == 0), candidate.size / 3.0,
             float(candidate.size < _SMALL), turn / math.pi, _unknown_share(terrain, candidate.cell),
-            float(i == pursued), min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 10,
-            (len(track) - been[0]) / 100.0 if len(been) else 0.0, math.dist(goals[i], track[0]) / 10.0,
+            float(i == pursued), min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 3,
+            (len(track) - been[0]) / 100.0 if len(been) else 0.0, math.dist(goals[i], track[0]) / 3.0,
             float(candidate.frontier is None), math.log10(max(d_optimality, 1e-9) / 1e-4),
         )  # fmt: skip
     return features
