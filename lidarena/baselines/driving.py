@@ -1,11 +1,14 @@
 """Driving an exploration robot to a place on the map that it believes in.
 
-The driver reads the map and the pose from ``info`` and nothing else but the beams. It plans a path with A* on the
+The driver reads the map and the pose from ``info`` and nothing else but the beams. What they have hit nearby of late
+counts as occupied even where the map says otherwise: a thin leg that the map has a hand's breadth beside is where the
+beams see it, not where older scans outvote them. It plans a path with A* on the
 inflated map, lets a :class:`~lidarena.planning.path_following.PathFollower` turn it into commands, and looks at the
 newest map before every single command.
 """
 
 import math
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
@@ -22,6 +25,8 @@ from lidarena.planning.path_following import PathFollower, blocked_ahead
 from lidarena.planning.surroundings import Surroundings
 
 _NEARBY = 1.2  # half the side of the window that is looked at before every command (m)
+_NEAR_HITS = 0.6  # hits so near are remembered … (m)
+_REMEMBERED = 2.0  # … for so long (s)
 _ESCAPE = 0.6  # how far around a robot in the lethal zone cells are opened (m)
 
 
@@ -70,6 +75,7 @@ class Driver:
         self.stop()
         self._info: Mapping[str, Any] = {}
         self._observation: Any = None
+        self._hits: deque[NDArray[np.float64]] = deque(maxlen=max(1, round(_REMEMBERED / self.robot.period)))
 
     def stop(self) -> None:
         """Give up the goal."""
@@ -81,6 +87,7 @@ class Driver:
         """Take in the environment's newest observation and info."""
         self._observation, self._info = observation, info
         self.pose = np.array(info["pose"], dtype=np.float64)
+        self._hits.append(self.robot.hits(observation, self.pose, _NEAR_HITS))
         self._around = self._nearby()
         self._is_clear = self._follower.is_clear(self.pose, self._around)
 
@@ -91,7 +98,18 @@ class Driver:
         row, col = int((self.pose[1] - y) / resolution), int((self.pose[0] - x) / resolution)
         half = math.ceil(_NEARBY / resolution)
         rows, cols = _overlap(row, half, occupancy.shape[0]), _overlap(col, half, occupancy.shape[1])
-        return self._surroundings(occupancy[rows, cols], (x + cols.start * resolution, y + rows.start * resolution))
+        origin = (x + cols.start * resolution, y + rows.start * resolution)
+        return self._surroundings(self._with_hits(occupancy[rows, cols], origin, resolution), origin)
+
+    def _with_hits(
+        self, occupancy: NDArray[np.int8], origin: tuple[float, float], resolution: float
+    ) -> NDArray[np.int8]:
+        """A copy of a part of the map in which what the beams have hit of late is occupied."""
+        marked = np.array(occupancy, dtype=np.int8, order="C")
+        cells = np.floor((np.concatenate(self._hits) - origin) / resolution).astype(np.int64)
+        inside = ((cells >= 0) & (cells < (marked.shape[1], marked.shape[0]))).all(axis=1)
+        marked[cells[inside, 1], cells[inside, 0]] = 100
+        return marked
 
     def _surroundings(self, occupancy: NDArray[np.int8], origin: tuple[float, float]) -> Surroundings:
         resolution = float(self._info["resolution"])
@@ -107,8 +125,9 @@ class Driver:
         if rows is None or cols is None:
             return None
         x, y = (float(value) for value in self._info["origin"])
-        crop = np.ascontiguousarray(occupancy[rows, cols])
-        around = self._surroundings(crop, (x + cols.start * resolution, y + rows.start * resolution))
+        origin = (x + cols.start * resolution, y + rows.start * resolution)
+        crop = self._with_hits(occupancy[rows, cols], origin, resolution)
+        around = self._surroundings(crop, origin)
         cell = around.cell(self.pose[0], self.pose[1])
         cost = inflate(crop, resolution, self.inflation, around.gap)
         open_start(cost, crop, around.gap, cell, math.ceil(_ESCAPE / resolution), self.inflation)

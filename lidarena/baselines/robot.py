@@ -61,13 +61,30 @@ class Robot:
 
         A command that takes the robot away from what a beam has hit is never held against that beam.
         """
-        angles: NDArray[np.float64] = _BEAM_ANGLES
-        if isinstance(observation, Mapping):
-            scan = np.asarray(observation["scan"], np.float64)
-            angles = np.linspace(0.0, 2.0 * math.pi, len(scan), endpoint=False)
-        else:
-            scan = np.asarray(observation, np.float64)[: len(angles)]
-        return bool(_touches(scan, angles, *self.commands.moves[command, :2]))
+        return bool(_touches(*_beams(observation), *self.commands.moves[command, :2]))
+
+    @staticmethod
+    def hits(observation: Any, pose: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
+        """Return where the observed beams hit something, (n, 2) x, y (m).
+
+        Args:
+            observation: The environment's.
+            pose: (3,) of the robot.
+            reach: Hits farther away than this are left out (m).
+        """
+        scan, angles = _beams(observation)
+        near = (scan > 0.0) & (scan * _MAX_RANGE < reach)
+        away, heading = scan[near] * _MAX_RANGE, angles[near] + pose[2]
+        points: NDArray[np.float64] = pose[:2] + np.column_stack([away * np.cos(heading), away * np.sin(heading)])
+        return points
+
+
+def _beams(observation: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Ranges over the largest one, and angles [rad], of the beams that an observation holds, (n,) each."""
+    if isinstance(observation, Mapping):
+        scan = np.asarray(observation["scan"], np.float64)
+        return scan, np.linspace(0.0, 2.0 * math.pi, len(scan), endpoint=False)
+    return np.asarray(observation, np.float64)[: len(_BEAM_ANGLES)], _BEAM_ANGLES
 
 
 def _decision_period(env: Any) -> float:

@@ -1,3 +1,5 @@
+import math
+
 import gymnasium as gym
 import numpy as np
 import pytest
@@ -78,3 +80,13 @@ def test_scans_are_understood_as_well():
     assert robot.would_touch(0, {"scan": scan})
     scan[350], scan[180] = 1.0, 0.13 / 3.5
     assert not robot.would_touch(0, {"scan": scan})  # it drives away from what is behind
+
+
+def test_hits_are_where_the_beams_end() -> None:
+    observation = np.array([0.1, 1.0, 0.05, 0.5, 0.0, 0.0, 0.0], np.float32)  # over 3.5 m; the last two are no beams
+    hits = Robot.hits(observation, np.array([1.0, 2.0, math.pi / 2]), reach=0.6)
+    assert hits == pytest.approx(np.array([[1.0, 2.35], [1.0 - 0.175, 2.0]]), abs=1e-6)
+    scan = {"scan": np.full(4, 0.1)}
+    assert Robot.hits(scan, np.zeros(3), reach=0.6) == pytest.approx(
+        np.array([[0.35, 0.0], [0.0, 0.35], [-0.35, 0.0], [0.0, -0.35]]), abs=1e-9
+    )
