@@ -28,26 +28,26 @@ def is_closed(drive: Driver, x: float, y: float) -> bool:
 
 def test_a_hit_nearby_is_an_obstacle_for_two_seconds() -> None:
     drive, info = driver(), world()
-    drive.sense(beams(0.4), info)
-    assert is_closed(drive, 1.9, 1.5)
+    drive.sense(beams(0.42), info)
+    assert is_closed(drive, 1.92, 1.5)
     for _ in range(9):
         drive.sense(beams(3.5), info)
-    assert is_closed(drive, 1.9, 1.5)
+    assert is_closed(drive, 1.92, 1.5)
     drive.sense(beams(3.5), info)
-    assert not is_closed(drive, 1.9, 1.5)
+    assert not is_closed(drive, 1.92, 1.5)
 
 
 def test_hits_far_away_are_left_to_the_map_and_the_map_itself_unchanged() -> None:
     drive, info = driver(), world()
     drive.sense(beams(0.8), info)
     assert not is_closed(drive, 2.3, 1.5)
-    drive.sense(beams(0.4), info)
+    drive.sense(beams(0.42), info)
     assert not info["map"].any()
 
 
 def test_reset_forgets_hits() -> None:
     drive, info = driver(), world()
-    drive.sense(beams(0.4), info)
+    drive.sense(beams(0.42), info)
     drive.reset()
     drive.sense(beams(3.5), info)
-    assert not is_closed(drive, 1.9, 1.5)
+    assert not is_closed(drive, 1.92, 1.5)
