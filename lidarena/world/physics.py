@@ -84,9 +84,13 @@ class Physics:
 
         A step of the solver moves the bodies first, then takes up velocities and clips them at contacts. The wheels'
         velocity therefore goes in between, through pymunk's callback, and one step more than there are moves is needed.
+        The bodies are new ones: an old one would still be pushed out of what it last touched, an episode ago perhaps,
+        and a resumed training could not repeat that.
         """
         steps = math.ceil(duration / self.spec.substep - 1e-9)
-        space, bodies = self._spaces[world], self._bodies[world]
+        space = self._spaces[world]
+        space.remove(*space.bodies, *(shape for body in space.bodies for shape in body.shapes))
+        bodies = self._bodies[world] = [self._add_robot(space) for _ in self._bodies[world]]
         for body, (speed, rate), (x, y, theta) in zip(bodies, commands, self.poses[world].tolist(), strict=True):
             body.position, body.angle = (x, y), theta
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0

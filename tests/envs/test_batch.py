@@ -165,3 +165,29 @@ def test_worlds_run_in_spawned_processes() -> None:
         assert np.array_equal(envs.step(actions)[0], batch.step(actions)[0])
     finally:
         envs.close()
+
+
+def test_a_restored_batch_goes_on_to_the_bit_through_collisions() -> None:
+    """What pymunk remembers of a wall that was hit must not outlive the episode, let alone the state."""
+
+    def make() -> gym.vector.VectorEnv:
+        return gym.make_vec(
+            "lidarena/Env1-v0", num_envs=4, vectorization_mode="vector_entry_point", start="random", particles=3
+        )
+
+    envs, rng, collisions = make(), np.random.default_rng(1), 0
+    envs.reset(seed=0)
+    for _ in range(60):
+        envs.step(rng.choice(3, 4, p=[0.5, 0.25, 0.25]))
+    other = make()
+    other.reset(seed=9)
+    other.set_state({name: np.array(value) for name, value in envs.get_state().items()})  # type: ignore[attr-defined]
+    for _ in range(80):
+        actions = rng.choice(3, 4, p=[0.5, 0.25, 0.25])
+        one, two = envs.step(actions), other.step(actions)
+        collisions += int(one[2].sum())
+        for name, value in envs.get_state().items():  # type: ignore[attr-defined]
+            if name != "fields.tiles":  # of which those in use are restored
+                assert np.array_equal(value, other.get_state()[name]), name  # type: ignore[attr-defined]
+        assert np.array_equal(one[0], two[0]) and np.array_equal(one[1], two[1])
+    assert collisions > 3
