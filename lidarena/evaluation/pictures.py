@@ -99,7 +99,8 @@ def overview(cells: Sequence[Sequence[Cell]]) -> "Figure":
                 axes.set_ylabel(f"{cell.env.label}\ny (m)")
             if row is cells[-1]:
                 axes.set_xlabel("x (m)")
-    figure.suptitle(f"First episode of each policy (seed {cells[0][0].episodes[0].seed})", fontsize=12)
+    # the layout does not see the annotated names of the policies: an empty second line leaves them room
+    figure.suptitle(f"First episode of each policy (seed {cells[0][0].episodes[0].seed})\n", fontsize=12)
     _legend(figure, *grid[0])
     return figure
 
@@ -199,7 +200,7 @@ def _draw_graph(axes: "Axes", trace: Trace) -> None:
     if len(trace.nodes):
         joints = [(tuple(trace.nodes[i]), tuple(trace.nodes[j])) for i, j in trace.links]
         axes.add_collection(LineCollection(joints, colors=GRAPH_COLOUR, linewidths=2.5, alpha=0.6, zorder=3))
-        style: dict[str, Any] = {"markersize": 6, "markeredgecolor": "white", "zorder": 3.5}
+        style: dict[str, Any] = {"markersize": 6, "markeredgecolor": "white", "zorder": 4.5}
         axes.plot(*trace.nodes.T, "o", color=GRAPH_COLOUR, label="topological graph", linestyle="", **style)
 
 

@@ -214,7 +214,7 @@ def search_commands(
     margins: NDArray[np.float64],
     limits: NDArray[np.float64],
 ) -> NDArray[np.int64]:
-    """Return the quickest sequence of commands to a target nearby, see :func:`steer`.
+    """Return the quickest commands to a target nearby, (n,) indices, (0,) if there are none; see :func:`steer`.
 
     Args:
         gap: (rows, cols) clearance of the cells (m); ``closed`` those that are forbidden.
@@ -229,9 +229,6 @@ def search_commands(
         margins: (3,) least clearance, preferred clearance (m), weight of the lack of it.
         limits: (3,) distance to the target that counts as there (m), half the side of the square that is searched (m),
             states that are looked at, at most.
-
-    Returns:
-        (n,) indices of commands; (0,) if nothing was found.
     """
     reach, side, most = limits[0], 2 * int(limits[1] / _BIN) + 1, int(limits[2])
     headings = math.ceil(_TWO_PI / max(_TURN_EDGE, np.abs(moves[:, 2]).max()) - 1e-6)
