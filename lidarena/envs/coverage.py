@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan
 from lidarena.world.raster import Raster
 
-_START_MARGIN = 0.25
+START_MARGIN = 0.25
 """Random starts keep this far from every wall [m]."""
 
 
@@ -61,6 +61,6 @@ def _connected(passable: NDArray[np.bool_], raster: Raster, start: tuple[float, 
 
 
 def _start_places(reached: NDArray[np.bool_], raster: Raster) -> NDArray[np.float64]:
-    roomy = reached & (raster.clearance >= _START_MARGIN)
+    roomy = reached & (raster.clearance >= START_MARGIN)
     cells = np.argwhere(roomy if roomy.any() else reached)
     return raster.origin + (cells[:, ::-1] + 0.5) * raster.resolution

@@ -69,7 +69,7 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     ## Episode end
 
-    - Termination: some beam is shorter than 0.12 m (collision), or completeness reached ``stop_at``.
+    - Termination: some beam is shorter than ``collision_distance`` (0.12 m), or completeness reached ``stop_at``.
     - Truncation: after ``max_episode_steps`` (1000) steps, or after ``patience`` seconds (never) without 0.1% more.
 
     ## Info

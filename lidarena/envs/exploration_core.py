@@ -127,7 +127,7 @@ class ExplorationCore:
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Read the sensors of worlds first … last - 1 and run their SLAM."""
         measured = (
-            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam,
+            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam, self.options.collision_distance,
             self.lidar.scenery, self.lidar.directions, self.sensors, self.options.decision_period, RESOLUTION,
         )  # fmt: skip
         counter = np.array([first])

@@ -8,7 +8,6 @@ from lidarena.slam.known_pose_mapping import map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.scan_outline import Outlines
-from lidarena.world.floorplan import START_CLEARANCE
 from lidarena.world.kernels import leaf, take_next
 from lidarena.world.lidar import LidarSpec, Scenery
 from lidarena.world.odometry import OdometryNoise
@@ -16,7 +15,7 @@ from lidarena.world.sensors import Sensors, read_sensors
 
 # Both kernels take: a counter (1,) at the first world and the world after the last, the thread's number; the true poses
 # (W, 1, 3) before and after the motion, the worlds' floor plans (W,) and random streams (W, 4); then what the sensors
-# and the maps are made of.
+# and the maps are made of, the range below which a beam is a collision among it.
 
 
 @leaf
@@ -30,6 +29,7 @@ def sense_and_filter(
     streams: NDArray[np.uint64],
     noise: OdometryNoise,
     lidar: LidarSpec,
+    bumper: float,
     scenery: Scenery,
     directions: NDArray[np.float64],
     sensors: Sensors,
@@ -43,7 +43,7 @@ def sense_and_filter(
     """Read the sensors and run the particle filter."""
     w = take_next(counter)
     while w < last:
-        read_sensors(w, before, poses, plan, noise, lidar, START_CLEARANCE, scenery, directions, streams, sensors)
+        read_sensors(w, before, poses, plan, noise, lidar, bumper, scenery, directions, streams, sensors)
         step_filter(
             w, period, resolution, lidar.max_range, directions, parameters, sensors.readings[w, 0],
             sensors.scans[w, 0], streams[w], state, maps, scratch, thread,
@@ -62,6 +62,7 @@ def sense_and_map(
     streams: NDArray[np.uint64],
     noise: OdometryNoise,
     lidar: LidarSpec,
+    bumper: float,
     scenery: Scenery,
     directions: NDArray[np.float64],
     sensors: Sensors,
@@ -75,7 +76,7 @@ def sense_and_map(
     """Read the sensors and map with the true poses."""
     w = take_next(counter)
     while w < last:
-        read_sensors(w, before, poses, plan, noise, lidar, START_CLEARANCE, scenery, directions, streams, sensors)
+        read_sensors(w, before, poses, plan, noise, lidar, bumper, scenery, directions, streams, sensors)
         map_scan(
             w, period, resolution, lidar.max_range, directions, parameters, sensors.readings[w, 0],
             sensors.scans[w, 0], poses[w, 0], since, maps, outlines, thread,
