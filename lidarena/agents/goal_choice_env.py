@@ -14,9 +14,11 @@ from lidarena.baselines.goal_choice import GoalChoicePolicy
 from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
-_WEIGHTS = {"path": 0.05, "time": 0.01, "uncertainty": 0.02, "coverage": 5.0, "collision": 10.0}
+_WEIGHTS = {"path": 0.06, "time": 0.015, "uncertainty": 0.04, "coverage": 5.0, "collision": 10.0}
 _CERTAIN = 1e-4
-"""D-optimality that costs nothing."""
+"""D-optimality that costs nothing; a lower one is worth something, … """
+_MOST_CERTAIN = -1.0
+"""… down to this of its logarithm, so little that loitering where the pose is certain never pays."""
 _LARGEST = 30.0
 
 
@@ -44,7 +46,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
     ## Rewards
 
     Σ over the decision periods of the step, of length Δt: coverage · Δcompleteness - path · Δpath [m] - time · Δt [s] -
-    uncertainty · Δt · max(ln(D / 10⁻⁴), -2), and - collision at a collision. The weights are the keyword ``weights``.
+    uncertainty · Δt · max(ln(D / 10⁻⁴), -1), and - collision at a collision. The weights are the keyword ``weights``.
 
     ## Episode end
 
@@ -119,7 +121,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
 
     def _cost(self, before: Mapping[str, Any], info: Mapping[str, Any]) -> float:
         weights, duration = self._weights, info["time"] - before["time"]
-        uncertain = max(float(np.log(info["d_optimality"] / _CERTAIN)), -2.0)
+        uncertain = max(float(np.log(info["d_optimality"] / _CERTAIN)), _MOST_CERTAIN)
         return float(
             weights["coverage"] * (info["completeness"] - before["completeness"])
             - weights["path"] * (info["path_length"] - before["path_length"])

@@ -27,6 +27,7 @@ NAMES = (
     "age",  # how long ago the robot came within 2 m of it for the first time / 100 s, 0 if never
     "home",  # straight distance from where the robot started / 3 m
     "revisit",  # 1 for the start itself, which is known already: going there closes a loop
+    "end",  # 1 for staying where it is, offered when no frontier is left: the exploration ends
     "uncertainty",  # log10 of D-optimality / 1e-4, the same for all
 )
 """The features, in their order."""
@@ -43,12 +44,14 @@ class Candidate:
     Attributes:
         cell: [row, column] of the map.
         size: Of the frontier there [m]; 0 for the start.
-        frontier: None for the start.
+        frontier: None for the start, and for staying.
+        ends: Whether to stay here, and end.
     """
 
     cell: tuple[int, int]
-    size: float
+    size: float = 0.0
     frontier: Frontier | None = None
+    ends: bool = False
 
 
 def describe(
@@ -87,7 +90,8 @@ def describe(
             float(candidate.size < _SMALL), turn / math.pi, _unknown_share(terrain, candidate.cell),
             float(i == pursued), min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 3,
             (len(track) - been[0]) / 100.0 if len(been) else 0.0, math.dist(goals[i], track[0]) / 3.0,
-            float(candidate.frontier is None), math.log10(max(d_optimality, 1e-9) / 1e-4),
+            float(candidate.frontier is None and not candidate.ends), float(candidate.ends),
+            math.log10(max(d_optimality, 1e-9) / 1e-4),
         )  # fmt: skip
     return features
 

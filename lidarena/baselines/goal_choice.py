@@ -28,10 +28,11 @@ class GoalChoicePolicy(FrontierPolicy):
 
     The candidates are the frontiers of at least 0.2 m, the nearest ones by way, and the place where the robot started:
     going back there closes a loop. What is told of each is in :mod:`lidarena.baselines.frontier_features`. ``choose``
-    is asked when the frontier that was driven to has vanished, and every 3 s.
+    is asked when the frontier that was driven to has vanished, and every 3 s. When no frontier is left it is asked once
+    more whether to end there or to drive back to the start first.
 
     Attributes:
-        finished: Whether no frontier is left.
+        finished: Whether no frontier is left, and the robot is where it wants to end.
     """
 
     def __init__(self, env: Any, choose: Choose) -> None:
@@ -50,6 +51,7 @@ class GoalChoicePolicy(FrontierPolicy):
         super().reset(seed)
         self._chosen_at = -math.inf
         self._goes_back = False
+        self._ends_at_start: bool | None = None  # None: not asked yet
         self._interrupted = False
         self._places: list[NDArray[np.float64]] = []
         self._uncertainties: deque[float] = deque(maxlen=_SCAN_STEPS)
@@ -77,12 +79,21 @@ class GoalChoicePolicy(FrontierPolicy):
         if self._goes_back:
             self._grown_at = self._step  # nothing new is expected there
         if not self.frontiers or self._is_exhausted(terrain):
-            return self.driver.is_cornered and bool(found)
+            return (self.driver.is_cornered and bool(found)) or self._drives_home(terrain)
+        self._ends_at_start = None
         if not self._goes_on(terrain):
             self._choose_anew(terrain)
         if self._goes_back:
             return True
         return self._pursue(self.frontiers, terrain) or self.driver.is_cornered
+
+    def _drives_home(self, terrain: Terrain) -> bool:
+        """Whether the robot, with nothing left to explore, is on its way back to the start."""
+        if self._ends_at_start is None:
+            lengths, stay = self._lengths(terrain), Candidate(terrain.cell, ends=True)
+            places = [stay, *self._start_candidate(lengths, terrain)]
+            self._ends_at_start = self._chosen(places, lengths, terrain, None) is not stay
+        return self._ends_at_start and self._go_back(terrain)
 
     def _goes_on(self, terrain: Terrain) -> bool:
         """Whether what was chosen is still there and too new to be chosen again; the frontier is then the first."""
@@ -96,10 +107,10 @@ class GoalChoicePolicy(FrontierPolicy):
 
     def _choose_anew(self, terrain: Terrain) -> None:
         """Have the next place chosen, and put the frontiers in order: that one first, then the nearest by way."""
-        open_grid = np.where(np.isfinite(terrain.cost), 1.0, np.inf)
-        lengths = path_costs(open_grid, terrain.cell) * terrain.around.resolution
+        lengths = self._lengths(terrain)
         self.frontiers.sort(key=lambda frontier: (lengths[frontier.goal], frontier.goal))
-        chosen = self._next(lengths, terrain)
+        candidates = self._candidates(lengths, terrain)
+        chosen = self._chosen(candidates, lengths, terrain, self._current(candidates, terrain))
         self._chosen_at = self._step
         self.frontiers.sort(key=lambda frontier: frontier is not chosen.frontier)
         self._goes_back = chosen.frontier is None and self._go_back(terrain)
@@ -115,6 +126,12 @@ class GoalChoicePolicy(FrontierPolicy):
         x, y = terrain.around.points(np.array([cell]))[0]
         return self.driver.go((float(x), float(y)), terrain) and not self.driver.arrived
 
+    @staticmethod
+    def _lengths(terrain: Terrain) -> NDArray[np.float64]:
+        """Length of the way to every cell [m]."""
+        lengths: NDArray[np.float64] = path_costs(np.where(np.isfinite(terrain.cost), 1.0, np.inf), terrain.cell)
+        return lengths * terrain.around.resolution
+
     def _start(self, terrain: Terrain) -> tuple[int, int]:
         """The reachable cell nearest to where the robot started."""
         row, column = terrain.around.cell(*self._places[0])
@@ -126,17 +143,20 @@ class GoalChoicePolicy(FrontierPolicy):
             Candidate(frontier.goal, frontier.size * resolution, frontier)
             for frontier in self.frontiers[: CANDIDATES - 1]
         ]
-        start = self._start(terrain)
-        if start[0] >= 0 and _BACK < lengths[start] < math.inf:
-            places.append(Candidate(start, 0.0))
-        return places
+        return places + self._start_candidate(lengths, terrain)
 
-    def _next(self, lengths: NDArray[np.float64], terrain: Terrain) -> Candidate:
-        """Where to drive to."""
-        candidates = self._candidates(lengths, terrain)
+    def _start_candidate(self, lengths: NDArray[np.float64], terrain: Terrain) -> list[Candidate]:
+        """The start, unless the robot is there or cannot get there."""
+        start = self._start(terrain)
+        return [Candidate(start)] if start[0] >= 0 and _BACK < lengths[start] < math.inf else []
+
+    def _chosen(
+        self, candidates: list[Candidate], lengths: NDArray[np.float64], terrain: Terrain, current: int | None
+    ) -> Candidate:
+        """Have one of some candidates chosen."""
         if len(candidates) == 1:
             return candidates[0]
-        current, track = self._current(candidates, terrain), np.array(self._places[:: self._every])
+        track = np.array(self._places[:: self._every])
         features = describe(candidates, lengths, terrain, self.driver.pose, current, min(self._uncertainties), track)
         choice = self._choose(features)
         return candidates[choice if 0 <= choice < len(candidates) else 0]

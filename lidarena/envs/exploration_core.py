@@ -126,9 +126,10 @@ class ExplorationCore:
 
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Read the sensors of worlds first … last - 1 and run their SLAM."""
+        bumper, period = self.options.collision_distance, self.options.decision_period
         measured = (
-            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam, self.options.collision_distance,
-            self.lidar.scenery, self.lidar.directions, self.sensors, self.options.decision_period, RESOLUTION,
+            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam, bumper,
+            self.lidar.scenery, self.lidar.directions, self.sensors, period, RESOLUTION,
         )  # fmt: skip
         counter = np.array([first])
         if self.filters is not None:
