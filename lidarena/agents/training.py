@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 import torch
 from stable_baselines3 import PPO
 from stable_baselines3.common.callbacks import BaseCallback
@@ -114,7 +115,7 @@ def make_model(config: TrainingConfig, env: VecEnv) -> PPO:
         network["net_arch"] = config.policy.net_arch
     with warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="You are trying to run PPO on the GPU")  # the user asked for it
-        return PPO(
+        model = PPO(
             policy_class(class_for(config.policy, env.observation_space)),
             env,
             policy_kwargs=network,
@@ -122,6 +123,16 @@ def make_model(config: TrainingConfig, env: VecEnv) -> PPO:
             device=config.device,
             **settings,
         )
+    env.seed(first_world_seed(config.seed))
+    return model
+
+
+def first_world_seed(seed: int) -> int:
+    """Seed of a training's first world; the next ones count on from it.
+
+    Trainings with the seeds 0 and 1 would share all worlds but two if their worlds began to count there.
+    """
+    return int(np.random.SeedSequence(seed).generate_state(1)[0])
 
 
 class _Stopped(Exception):  # noqa: N818  not an error: it carries the wish to stop out of Stable-Baselines3's loop

@@ -4,6 +4,7 @@ import os
 import random
 import signal
 import sys
+from itertools import combinations
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +15,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 import lidarena.agents
 from lidarena.agents import TrainingStopped, load, load_config, train
+from lidarena.agents.training import first_world_seed
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.world.atomic_files import write_folder
 from lidarena.world.refusals import ConfigError
@@ -273,3 +275,9 @@ def test_the_temporary_folder_stays_clean(tmp_path: Path, monkeypatch: pytest.Mo
     train(small(tmp_path / "run", "total_steps=64"), progress=False)
     assert os.listdir(tmp_path / "tmp") == []
     random.seed(0)
+
+
+def test_trainings_of_neighbouring_seeds_share_no_world() -> None:
+    first = [first_world_seed(seed) for seed in range(50)]
+    assert min(abs(a - b) for a, b in combinations(first, 2)) > 1000
+    assert first == [first_world_seed(seed) for seed in range(50)]
