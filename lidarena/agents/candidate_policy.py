@@ -6,8 +6,10 @@ import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
+from lidarena.baselines.frontier_features import NAMES, RULE
+
 _SHARPNESS = 0.01
-"""Scale of the scores before training: every candidate is about as likely."""
+"""Scale of what the layers add to the rule before training."""
 
 
 class CandidateScores(nn.Module):
@@ -69,8 +71,9 @@ class CandidateScores(nn.Module):
 class CandidatePolicy(ActorCriticPolicy):
     """Stable-Baselines3's actor-critic with ``CandidateScores`` in place of its layers.
 
-    For observations ``Box`` of shape (candidates, features) and actions ``Discrete(candidates)``. The encoder's widths
-    are ``net_arch``, a list.
+    For ``lidarena/GoalChoice-v0``: observations ``Box`` of shape (CANDIDATES, FEATURES) and actions
+    ``Discrete(CANDIDATES)``. The encoder's widths are ``net_arch``, a list. It begins as ``frontier_features.RULE``: an
+    agent that chose at random would seldom come to the end of a world.
     """
 
     def _build_mlp_extractor(self) -> None:
@@ -86,6 +89,6 @@ class CandidatePolicy(ActorCriticPolicy):
         scores: Any = self.mlp_extractor
         with torch.no_grad():
             scores.scorer[-1].weight.mul_(_SHARPNESS)
-            scores.plain.weight.mul_(_SHARPNESS)
+            scores.plain.weight.copy_(torch.tensor([[RULE.get(name, 0.0) for name in NAMES]]))
         optimizer: Any = self.optimizer_class
         self.optimizer = optimizer(self.parameters(), lr=lr_schedule(1), **self.optimizer_kwargs)
