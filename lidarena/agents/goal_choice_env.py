@@ -140,8 +140,17 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
 
 def make_goal_choice_batch(num_envs: int = 1, **keywords: Any) -> VectorEnv[Any, Any, Any]:
     """``num_envs`` worlds, each in a process of its own: their steps take different times."""
+    _compile(keywords)
     makers: list[Callable[[], gym.Env[Any, Any]]] = [partial(GoalChoiceEnv, **keywords) for _ in range(num_envs)]
     return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.SAME_STEP)
+
+
+def _compile(keywords: Mapping[str, Any]) -> None:
+    """Take a step in this process, so that what is compiled at first use is compiled once, not by every process."""
+    world = GoalChoiceEnv(**keywords)
+    world.reset(seed=0)
+    world.step(0)
+    world.close()
 
 
 def register_goal_choice() -> None:

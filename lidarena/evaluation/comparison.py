@@ -94,7 +94,8 @@ def write_tables(folder: Path, config: ComparisonConfig, rows: Sequence[Row]) ->
 def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[Cell]]:
     tasks = list_tasks(config, videos)
     with report_progress(len(tasks), console) as advance:
-        episodes = run_tasks(tasks, config.workers, lambda task: advance(str(task)))
-    blocks = [episodes[start : start + config.episodes] for start in range(0, len(episodes), config.episodes)]
-    cells = iter(blocks)
-    return [[Cell(env, policy, next(cells)) for policy in config.policies] for env in config.envs]
+        episodes = iter(run_tasks(tasks, config.workers, lambda task: advance(str(task))))
+    return [
+        [Cell(env, policy, [next(episodes) for _ in config.seeds(env)]) for policy in config.policies]
+        for env in config.envs
+    ]

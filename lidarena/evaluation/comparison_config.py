@@ -17,18 +17,26 @@ def _named(key: str) -> BeforeValidator:
     return BeforeValidator(lambda value: {key: value} if isinstance(value, str) else value)
 
 
+def _fill(value: Any, seed: int) -> Any:
+    """A keyword's value with the episode's seed for ``{seed}``."""
+    return value.replace("{seed}", str(seed)) if isinstance(value, str) else value
+
+
 class EnvEntry(ConfigModel):
     """One environment of a comparison.
 
     Attributes:
         id: Gymnasium's, such as ``lidarena/Env1-v0``; ``module:id`` imports a module of yours first.
         name: What tables and pictures call it; the id without its namespace if left out.
-        keywords: Handed to `gymnasium.make`, such as ``map`` or ``max_episode_steps``.
+        keywords: Handed to `gymnasium.make`, such as ``map`` or ``max_episode_steps``. ``{seed}`` in a text stands for
+            the seed of the episode: with ``map: "maze:{seed}"`` every episode has a maze of its own.
+        episodes: Here; those of the comparison if left out.
     """
 
     id: str = Field(min_length=1)
     name: str | None = None
     keywords: dict[str, Any] = Field(default_factory=dict)
+    episodes: int | None = Field(default=None, ge=1, le=100_000)
 
     @model_validator(mode="after")
     def _leave_the_evaluation_its_own(self) -> Self:
@@ -36,6 +44,10 @@ class EnvEntry(ConfigModel):
             if key in self.keywords:
                 raise ValueError(f"the keyword {key!r} of {self.id!r} is set by the evaluation itself, so leave it out")
         return self
+
+    def of_episode(self, seed: int) -> "EnvEntry":
+        """The entry with the seed of an episode filled in."""
+        return self.model_copy(update={"keywords": {key: _fill(value, seed) for key, value in self.keywords.items()}})
 
     @property
     def label(self) -> str:
@@ -84,7 +96,7 @@ class ComparisonConfig(ConfigModel):
         envs: The environments; a plain id stands for an entry without keywords.
         policies: The policies; a plain name stands for a baseline without options. The first is the one that the
             others are compared with pair by pair.
-        episodes: Per environment and policy.
+        episodes: Per environment and policy, where the environment's entry does not say otherwise.
         seed: Episode k of every policy runs on seed + k, so that policies meet the same worlds.
         pictures: Draw the first episode of each, an overview and the progress over time (PNG).
         videos: Film the first episode of each: ``mp4``, ``gif``, or false.
@@ -112,10 +124,9 @@ class ComparisonConfig(ConfigModel):
         """Folder of the results."""
         return Path(self.out)
 
-    @property
-    def seeds(self) -> range:
-        """Seeds of the episodes, the same for every policy."""
-        return range(self.seed, self.seed + self.episodes)
+    def seeds(self, env: EnvEntry) -> range:
+        """Seeds of the episodes in an environment, the same for every policy."""
+        return range(self.seed, self.seed + (env.episodes or self.episodes))
 
 
 def file_name(label: str) -> str:

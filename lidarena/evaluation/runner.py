@@ -79,7 +79,7 @@ def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
     tasks = []
     for env in config.envs:
         for policy in config.policies:
-            for seed in config.seeds:
+            for seed in config.seeds(env):
                 first = seed == config.seed
                 film = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
                 tasks.append(Task(env, policy, seed, config.pictures and first, film))
@@ -194,7 +194,7 @@ def _raise(task: Task, failure: _Failure) -> NoReturn:
 
 
 def _run(task: Task) -> Episode:
-    env, policy = make_participants(task.env, task.policy, "rgb_array" if task.film else None)
+    env, policy = make_participants(task.env.of_episode(task.seed), task.policy, "rgb_array" if task.film else None)
     try:
         _limit_threads(1)
         how: dict[str, Any] = {"max_steps": task.max_steps, "keep_trace": task.keep_trace}

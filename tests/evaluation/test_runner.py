@@ -49,6 +49,16 @@ def test_every_policy_meets_the_same_seeds() -> None:
     assert [episode.seed for episode in run_tasks(tasks, workers=1)] == [10, 11, 12] * 2
 
 
+def test_an_environment_may_have_a_number_of_episodes_and_worlds_of_its_own() -> None:
+    world = f"{HERE}:fake/Corridor-v0"
+    many, one = {"id": world, "name": "many"}, {"id": world, "name": "one", "episodes": 1}
+    config = config_of(TWO[0], envs=[many, one | {"keywords": {"reward": "of {seed}"}}])
+    tasks = list_tasks(config, Path("videos"))
+    assert [(task.env.label, task.seed) for task in tasks] == [("many", 10), ("many", 11), ("many", 12), ("one", 10)]
+    assert tasks[-1].env.of_episode(10).keywords == {"reward": "of 10"}
+    assert len(run_tasks(tasks, workers=1)) == 4
+
+
 def test_only_the_first_episode_is_drawn_and_filmed() -> None:
     tasks = list_tasks(config_of(*TWO, videos="mp4"), Path("videos"))
     assert [task.keep_trace for task in tasks] == [True, False, False] * 2
