@@ -14,10 +14,10 @@ from lidarena.baselines.goal_choice import GoalChoicePolicy
 from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
-_WEIGHTS = {"path": 0.06, "time": 0.015, "uncertainty": 0.04, "coverage": 5.0, "collision": 10.0}
-_CERTAIN = 1e-4
+_WEIGHTS = {"path": 0.06, "time": 0.008, "uncertainty": 0.06, "coverage": 5.0, "collision": 10.0}
+_CERTAIN = 1.3e-4
 """D-optimality that costs nothing; a lower one is worth something, … """
-_MOST_CERTAIN = -1.0
+_MOST_CERTAIN = -0.3
 """… down to this of its logarithm, so little that loitering where the pose is certain never pays."""
 _LARGEST = 30.0
 
@@ -46,7 +46,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
     ## Rewards
 
     Σ over the decision periods of the step, of length Δt: coverage · Δcompleteness - path · Δpath [m] - time · Δt [s] -
-    uncertainty · Δt · max(ln(D / 10⁻⁴), -1), and - collision at a collision. The weights are the keyword ``weights``.
+    uncertainty · Δt · max(ln(D / 1.3·10⁻⁴), -0.3), and - collision at a collision. The weights are the keyword ``weights``.
 
     ## Episode end
 
