@@ -1,16 +1,16 @@
 """The world in which the combined agent learns: every step chooses where to explore next, and the driver gets there."""
 
-from collections.abc import Callable, Mapping
-from functools import partial
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import AsyncVectorEnv, AutoresetMode, VectorEnv
+from gymnasium.utils import seeding
 from numpy.typing import NDArray
 
 from lidarena.baselines.frontier_features import CANDIDATES, FEATURES
 from lidarena.baselines.goal_choice import GoalChoicePolicy
+from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
@@ -46,7 +46,8 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
     ## Rewards
 
     Σ over the decision periods of the step, of length Δt: coverage · Δcompleteness - path · Δpath [m] - time · Δt [s] -
-    uncertainty · Δt · max(ln(D / 1.3·10⁻⁴), -0.3), and - collision at a collision. The weights are the keyword ``weights``.
+    uncertainty · Δt · max(ln(D / 1.3·10⁻⁴), -0.3), and - collision at a collision. The weights are the keyword
+    ``weights``.
 
     ## Episode end
 
@@ -87,20 +88,44 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
     ) -> tuple[NDArray[np.float32], dict[str, Any]]:
         """Begin an episode, up to its first choice."""
         super().reset(seed=seed)
+        if seed is not None:
+            self._world.unwrapped.np_random = seeding.np_random(seed)[0]
         while True:
-            self._seen = self._world.reset(seed=seed)
-            seed = None
-            self._policy.reset()
-            self._choice = None
-            features, _, terminated, truncated = self._drive()
+            features, _, terminated, truncated = self._begin()
             if not (terminated or truncated):  # a world without a single choice teaches nothing
                 return features, self._info()
+
+    def _begin(self) -> tuple[NDArray[np.float32], float, bool, bool]:
+        """Begin an episode of the exploration world, and write down what it takes to begin it again."""
+        self._began_with = generator_words(self._world.unwrapped.np_random)
+        self._choices: list[int] = []
+        self._seen = self._world.reset()
+        self._policy.reset()
+        self._choice = None
+        return self._drive()
 
     def step(self, action: int) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:
         """Drive to a candidate until the next choice is due."""
         self._choice = int(action)
+        self._choices.append(int(action))
         features, reward, terminated, truncated = self._drive()
         return features, reward, terminated, truncated, self._info()
+
+    @property
+    def memory(self) -> tuple[NDArray[np.uint64], NDArray[np.int64]]:
+        """How the episode came about: the generator's words (6,) at its beginning, and the choices since then.
+
+        Setting it lives through the same episode again, up to the same moment.
+        """
+        return self._began_with, np.array(self._choices, dtype=np.int64)
+
+    @memory.setter
+    def memory(self, memory: tuple[NDArray[np.uint64], NDArray[np.int64]]) -> None:
+        words, choices = memory
+        self._world.unwrapped.np_random = generator_from_words(words)
+        self._begin()
+        for choice in choices.tolist():
+            self.step(choice)
 
     def _drive(self) -> tuple[NDArray[np.float32], float, bool, bool]:
         """Let the policy drive until it asks, or the episode ends."""
@@ -138,26 +163,11 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         self._world.close()
 
 
-def make_goal_choice_batch(num_envs: int = 1, **keywords: Any) -> VectorEnv[Any, Any, Any]:
-    """``num_envs`` worlds, each in a process of its own: their steps take different times."""
-    _compile(keywords)
-    makers: list[Callable[[], gym.Env[Any, Any]]] = [partial(GoalChoiceEnv, **keywords) for _ in range(num_envs)]
-    return AsyncVectorEnv(makers, context="spawn", autoreset_mode=AutoresetMode.SAME_STEP)
-
-
-def _compile(keywords: Mapping[str, Any]) -> None:
-    """Take a step in this process, so that what is compiled at first use is compiled once, not by every process."""
-    world = GoalChoiceEnv(**keywords)
-    world.reset(seed=0)
-    world.step(0)
-    world.close()
-
-
 def register_goal_choice() -> None:
     """Register the id; doing so again changes nothing."""
     if GOAL_CHOICE_ID not in gym.registry:
         gym.register(
             id=GOAL_CHOICE_ID,
             entry_point="lidarena.agents.goal_choice_env:GoalChoiceEnv",
-            vector_entry_point="lidarena.agents.goal_choice_env:make_goal_choice_batch",
+            vector_entry_point="lidarena.agents.goal_choice_batch:GoalChoiceBatch",
         )

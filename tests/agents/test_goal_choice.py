@@ -99,6 +99,38 @@ def test_an_agent_is_trained_saved_loaded_and_driven(tmp_path: Path) -> None:
     assert np.array_equal(*paths) and not policy.finished
 
 
+def test_a_world_that_lives_through_its_episode_again_goes_on_alike() -> None:
+    one, other = (GoalChoiceEnv(map=[MAZE, "maze:6?width=5&height=5"], start="random") for _ in range(2))
+    one.reset(seed=7)
+    for choice in (0, 1, 0, 2):
+        one.step(choice)
+    other.reset(seed=8)
+    other.step(1)
+    other.memory = one.memory
+    for choice in (0, 3, 0):
+        for first, second in zip(one.step(choice), other.step(choice), strict=True):
+            np.testing.assert_equal(first, second)
+    for first, second in zip(one.reset(), other.reset(), strict=True):  # the generators stand at the same number, too
+        np.testing.assert_equal(first, second)
+
+
+def test_a_training_that_was_cut_off_goes_on_to_the_bit(tmp_path: Path) -> None:
+    content = {
+        "env": {"id": GOAL_CHOICE_ID, "keywords": {"map": MAZE, "max_episode_steps": 250, "particles": 5}},
+        "num_envs": 2,
+        "ppo": {"n_steps": 8, "batch_size": 16, "n_epochs": 1},
+        "policy": {"class": "CandidatePolicy", "net_arch": [8]},
+    }
+    halves, whole = (
+        check_config(content | {"total_steps": steps, "out": str(tmp_path / name)}, TrainingConfig)
+        for steps, name in ((16, "halves"), (32, "whole"))
+    )
+    cut = agents.train(halves, progress=False)
+    agents.train(halves.model_copy(update={"total_steps": 32, "out": str(cut)}), resume=cut, progress=False)
+    left_alone = agents.train(whole, progress=False)
+    assert (cut / "policy.safetensors").read_bytes() == (left_alone / "policy.safetensors").read_bytes()
+
+
 def test_the_id_is_registered_once() -> None:
     register_goal_choice()
     register_goal_choice()
