@@ -28,7 +28,7 @@ FACING, WHICH_TILE, PLACE, CELLS = (np.uint64(k * BLOCK) for k in range(4))
 NEXT, ROW = np.uint64(BLOCK), np.uint64(3 * BLOCK)
 """From a cell's row among the integers to the next cell's, and to that of the cell above."""
 _REALS, _INTEGERS = 11, 12
-_ONE, _ABOVE = np.uint64(1), np.uint64(_SIDE)
+_ONE, MIDDLE = np.uint64(1), np.uint64(_SIDE + 1)
 
 
 class Workspace(NamedTuple):
@@ -121,19 +121,26 @@ def facing(cell: int, allowed: int) -> float:
     return np.float64(np.int32(np.int32(cell >> np.int32(4)) & np.int32(-np.int32(seen))))
 
 
+@inlined
+def corner(names: NDArray[np.int32], integers: NDArray[np.int32], i: int) -> int:
+    """Where among all cells the 3 × 3 around the located point i begin; the point's own is the fifth, at ``MIDDLE``."""
+    tile = np.int64(names[np.uint64(integers[i + WHICH_TILE])])
+    first: int = tile * (_SIDE * _SIDE) + integers[i + PLACE]
+    return first
+
+
 @leaf
 def gather_middle(cells: NDArray[np.uint16], names: NDArray[np.int32], count: int, integers: NDArray[np.int32]) -> None:
     """Read the cell that each located point lies in to CELLS; ``names`` is the particle's table in one row."""
     for i in range(np.uint64(count)):
-        first = np.int64(names[np.uint64(integers[i + WHICH_TILE])]) * (_SIDE * _SIDE) + integers[i + PLACE]
-        integers[i + CELLS] = cells[np.uint64(first) + _ABOVE + _ONE]
+        integers[i + CELLS] = cells[np.uint64(corner(names, integers, i)) + MIDDLE]
 
 
 @leaf
 def gather_around(cells: NDArray[np.uint16], names: NDArray[np.int32], count: int, integers: NDArray[np.int32]) -> None:
     """Read the 3 × 3 cells around each located point to CELLS and on; ``names`` is the particle's table in one row."""
     for i in range(np.uint64(count)):
-        first = np.int64(names[np.uint64(integers[i + WHICH_TILE])]) * (_SIDE * _SIDE) + integers[i + PLACE]
+        first = corner(names, integers, i)
         to = i + CELLS
         for row in range(3):
             k = np.uint64(first + row * _SIDE)

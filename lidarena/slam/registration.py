@@ -10,10 +10,10 @@ from lidarena.slam.point_blocks import (
     BLOCK,
     CELLS,
     FACING,
-    PLACE,
-    WHICH_TILE,
+    MIDDLE,
     U,
     V,
+    corner,
     facing,
     gather_middle,
     locate,
@@ -82,8 +82,7 @@ def register_points(
             if allowed == 0 or facing(integers[i + CELLS], allowed) >= _FRESH:
                 continue
             # what was read may be out of date by now: the last stamp reached this cell, too
-            place = np.int64(names[np.uint64(integers[i + WHICH_TILE])]) * (TILE + 2) ** 2 + integers[i + PLACE]
-            if facing(np.int32(cells[np.uint64(place + TILE + 3)]), allowed) < _FRESH:
+            if facing(np.int32(cells[np.uint64(corner(names, integers, i)) + MIDDLE]), allowed) < _FRESH:
                 sector = np.int64(turn + points[block, 4, k]) & (SECTORS - 1)
                 _stamp(fields, cells, w, particle, reals[i + U], reals[i + V], sector)
 
