@@ -1,5 +1,6 @@
 """The world in which the combined agent learns: every step chooses where to explore next, and the driver gets there."""
 
+import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -14,11 +15,11 @@ from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
-_WEIGHTS = {"path": 0.06, "time": 0.008, "uncertainty": 0.06, "coverage": 5.0, "collision": 10.0}
-_CERTAIN = 1.3e-4
-"""D-optimality that costs nothing; a lower one is worth something, … """
-_MOST_CERTAIN = -0.3
-"""… down to this of its logarithm, so little that loitering where the pose is certain never pays."""
+_WEIGHTS = {"path": 1.0, "uncertainty": 2.0, "coverage": 2.0, "collision": 3.0}
+_PATH_PER_AREA = 0.55
+"""About what ``frontier`` drives for a square metre of floor plan [1/m]; paths are weighed against it."""
+_USUAL, _USUAL_STEPS = 1.3e-4, 50
+"""The mean of D-optimality begins as if it had been this for so many steps; the certain pose at the start says little."""
 _LARGEST = 30.0
 
 
@@ -45,9 +46,9 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Rewards
 
-    Σ over the decision periods of the step, of length Δt: coverage · Δcompleteness - path · Δpath [m] - time · Δt [s] -
-    uncertainty · Δt · max(ln(D / 1.3·10⁻⁴), -0.3), and - collision at a collision. The weights are the keyword
-    ``weights``.
+    Sums over the decision periods of the step: coverage · Δcompleteness - path · Δpath / (0.55/m · area of the floor
+    plan) - uncertainty · Δ(mean of ln D since the start), and - collision at a collision. Over an episode this adds up
+    to what a comparison measures. The weights are the keyword ``weights``.
 
     ## Episode end
 
@@ -100,6 +101,9 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         self._began_with = generator_words(self._world.unwrapped.np_random)
         self._choices: list[int] = []
         self._seen = self._world.reset()
+        x_min, y_min, x_max, y_max = self._world.get_wrapper_attr("floorplan").bounds
+        self._usual_path = _PATH_PER_AREA * (x_max - x_min) * (y_max - y_min)
+        self._log_mean, self._steps = math.log(_USUAL), 0
         self._policy.reset()
         self._choice = None
         return self._drive()
@@ -140,17 +144,18 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
             before = self._seen[1]
             observation, _, terminated, truncated, info = self._world.step(action)
             self._seen = observation, info
-            reward += self._cost(before, info)
+            reward += self._gain(before, info)
             if terminated or truncated:
                 return nothing, reward, terminated, truncated
 
-    def _cost(self, before: Mapping[str, Any], info: Mapping[str, Any]) -> float:
-        weights, duration = self._weights, info["time"] - before["time"]
-        uncertain = max(float(np.log(info["d_optimality"] / _CERTAIN)), _MOST_CERTAIN)
+    def _gain(self, before: Mapping[str, Any], info: Mapping[str, Any]) -> float:
+        weights, mean = self._weights, self._log_mean
+        self._steps += 1
+        self._log_mean += (math.log(info["d_optimality"]) - mean) / (self._steps + _USUAL_STEPS)
         return float(
             weights["coverage"] * (info["completeness"] - before["completeness"])
-            - weights["path"] * (info["path_length"] - before["path_length"])
-            - duration * (weights["time"] + weights["uncertainty"] * uncertain)
+            - weights["path"] * (info["path_length"] - before["path_length"]) / self._usual_path
+            - weights["uncertainty"] * (self._log_mean - mean)
             - weights["collision"] * info["collision"]
         )
 

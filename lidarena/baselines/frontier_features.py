@@ -28,12 +28,15 @@ NAMES = (
     "home",  # straight distance from where the robot started / 3 m
     "revisit",  # 1 for the start itself, which is known already: going there closes a loop
     "end",  # 1 for staying where it is, offered when no frontier is left: the exploration ends
-    "uncertainty",  # log10 of D-optimality / 1e-4, the same for all
+    # the same for all:
+    "uncertainty",  # log10 of D-optimality / 1e-4
+    "mean",  # log10 of its geometric mean so far / 1e-4
+    "elapsed",  # time / 100 s
 )
 """The features, in their order."""
 FEATURES = len(NAMES)
-RULE = {"way": -2.0, "pursued": 1.5, "turn": -0.7, "end": -2.0}
-"""Weights of a sound rule to begin learning from: the nearest, without driving to and fro between two."""
+RULE = {"way": -2.0, "pursued": 1.5, "turn": -0.7, "home": -1.0, "end": -3.0}
+"""Weights of a sound rule to begin learning from: the nearest, rather near the start, without driving to and fro."""
 
 _SIGHT, _BEEN, _LEG = 1.5, 2.0, 0.6  # (m)
 _SMALL = 0.5  # (m)
@@ -56,13 +59,32 @@ class Candidate:
     ends: bool = False
 
 
+@dataclass(frozen=True)
+class Certainty:
+    """How certain the pose is.
+
+    Attributes:
+        now: D-optimality.
+        mean: Its geometric mean since the start.
+        elapsed: Time since the start [s].
+    """
+
+    now: float
+    mean: float
+    elapsed: float
+
+    def features(self) -> tuple[float, float, float]:
+        """The last three of ``NAMES``."""
+        return math.log10(max(self.now, 1e-9) / 1e-4), math.log10(max(self.mean, 1e-9) / 1e-4), self.elapsed / 100.0
+
+
 def describe(
     candidates: Sequence[Candidate],
     lengths: NDArray[np.float64],
     terrain: Terrain,
     pose: NDArray[np.float64],
     pursued: int | None,
-    d_optimality: float,
+    certainty: Certainty,
     track: NDArray[np.float64],
 ) -> NDArray[np.float32]:
     """Describe the candidates.
@@ -73,7 +95,7 @@ def describe(
         terrain: The map.
         pose: (3,) of the robot.
         pursued: Which one is driven to.
-        d_optimality: Of the pose.
+        certainty: Of the pose.
         track: (n, 2) where the robot has been, once a second, the start first.
 
     Returns:
@@ -93,7 +115,7 @@ def describe(
             float(i == pursued), min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 3,
             (len(track) - been[0]) / 100.0 if len(been) else 0.0, math.dist(goals[i], track[0]) / 3.0,
             float(candidate.frontier is None and not candidate.ends), float(candidate.ends),
-            math.log10(max(d_optimality, 1e-9) / 1e-4),
+            *certainty.features(),
         )  # fmt: skip
     return features
 

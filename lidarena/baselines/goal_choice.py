@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lidarena.baselines.driving import Terrain
 from lidarena.baselines.frontier import FrontierPolicy
-from lidarena.baselines.frontier_features import CANDIDATES, Candidate, describe
+from lidarena.baselines.frontier_features import CANDIDATES, Candidate, Certainty, describe
 from lidarena.planning.frontiers import Frontier, find_frontiers, nearest_cell
 from lidarena.planning.grid_search import path_costs
 
@@ -55,6 +55,7 @@ class GoalChoicePolicy(FrontierPolicy):
         self._interrupted = False
         self._places: list[NDArray[np.float64]] = []
         self._uncertainties: deque[float] = deque(maxlen=_SCAN_STEPS)
+        self._log_sum = 0.0
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Return the next action.
@@ -65,6 +66,7 @@ class GoalChoicePolicy(FrontierPolicy):
         """
         if not self._interrupted:
             self._uncertainties.append(float(info["d_optimality"]))
+            self._log_sum += math.log(max(self._uncertainties[-1], 1e-12))
             self._places.append(np.array(info["pose"][:2], dtype=np.float64))
         self._interrupted = True  # ``choose`` may raise, to be answered in another call with the same arguments
         action = super().act(observation, info)
@@ -157,7 +159,11 @@ class GoalChoicePolicy(FrontierPolicy):
         if len(candidates) == 1:
             return candidates[0]
         track = np.array(self._places[:: self._every])
-        features = describe(candidates, lengths, terrain, self.driver.pose, current, min(self._uncertainties), track)
+        steps = len(self._places)
+        certainty = Certainty(
+            min(self._uncertainties), math.exp(self._log_sum / steps), steps * self.driver.robot.period
+        )
+        features = describe(candidates, lengths, terrain, self.driver.pose, current, certainty, track)
         choice = self._choose(features)
         return candidates[choice if 0 <= choice < len(candidates) else 0]
 

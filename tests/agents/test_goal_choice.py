@@ -26,21 +26,34 @@ def test_gymnasium_finds_nothing_to_complain_about() -> None:
     check_env(GoalChoiceEnv(map=MAZE, max_episode_steps=200), skip_render_check=True)
 
 
+def episode(**weights: float) -> tuple[float, dict, dict, list[float]]:
+    """Sum of the rewards with these weights alone, first and last info, and D-optimality at every decision."""
+    only = dict.fromkeys(("path", "uncertainty", "coverage", "collision"), 0.0)
+    env = GoalChoiceEnv(map=MAZE, weights=only | weights, max_episode_steps=400)
+    _, start = env.reset(seed=1)
+    seen: list[float] = []
+    step = env._world.step
+    env._world.step = lambda action: note(step(action), seen)  # type: ignore[method-assign]
+    total, ended = 0.0, False
+    while not ended:
+        _, reward, terminated, truncated, info = env.step(0)
+        total, ended = total + reward, terminated or truncated
+    return total, start, info, seen
+
+
+def note(outcome: tuple, seen: list[float]) -> tuple:
+    seen.append(outcome[4]["d_optimality"])
+    return outcome
+
+
 def test_rewards_are_what_their_weights_say() -> None:
-    only = {"path": 0.0, "time": 0.0, "uncertainty": 0.0, "coverage": 0.0, "collision": 0.0}
-    totals = {}
-    for name in ("path", "time", "coverage"):
-        env = GoalChoiceEnv(map=MAZE, weights=only | {name: 1.0}, max_episode_steps=400)
-        _, start = env.reset(seed=1)
-        total, ended = 0.0, False
-        while not ended:
-            _, reward, terminated, truncated, info = env.step(0)
-            total, ended = total + reward, terminated or truncated
-        key = {"path": "path_length", "time": "time", "coverage": "completeness"}[name]
-        totals[name] = (total, info[key] - start[key])
-    assert totals["path"][0] == pytest.approx(-totals["path"][1])
-    assert totals["time"][0] == pytest.approx(-totals["time"][1])
-    assert totals["coverage"][0] == pytest.approx(totals["coverage"][1]) and totals["coverage"][1] > 0.5
+    total, start, end, _ = episode(coverage=1.0)
+    assert total == pytest.approx(end["completeness"] - start["completeness"]) and total > 0.5
+    total, start, end, _ = episode(path=1.0)
+    assert total == pytest.approx(-(end["path_length"] - start["path_length"]) / (0.55 * 25))
+    total, *_, seen = episode(uncertainty=1.0)
+    usual = np.full(50, np.log(1.3e-4))
+    assert total == pytest.approx(usual[0] - np.concatenate([usual, np.log(seen)]).mean())
 
 
 def test_unknown_weights_are_refused() -> None:
