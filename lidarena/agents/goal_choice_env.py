@@ -19,7 +19,7 @@ _WEIGHTS = {"path": 1.0, "uncertainty": 2.0, "coverage": 2.0, "collision": 3.0}
 _PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]; paths are weighed against it."""
 _USUAL, _USUAL_STEPS = 1.3e-4, 50
-"""The mean of D-optimality begins as if it had been this for so many steps; the certain pose at the start says little."""
+"""The mean of D-optimality begins as if it had been this for so many steps; the certain start says little."""
 _LARGEST = 30.0
 
 
