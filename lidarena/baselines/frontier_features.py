@@ -35,7 +35,7 @@ NAMES = (
 )
 """The features, in their order."""
 FEATURES = len(NAMES)
-RULE = {"way": -2.0, "pursued": 1.5, "turn": -0.7, "home": -1.0, "end": -3.0}
+RULE = {"way": -2.0, "pursued": 1.5, "turn": -0.7, "home": -0.7, "revisit": -4.0, "end": -5.0}
 """Weights of a sound rule to begin learning from: the nearest, rather near the start, without driving to and fro."""
 
 _SIGHT, _BEEN, _LEG = 1.5, 2.0, 0.6  # (m)
