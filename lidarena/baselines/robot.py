@@ -9,6 +9,7 @@ import numpy as np
 from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.envs.exploration_observation import SECTORS
 from lidarena.planning.steering import Commands
 from lidarena.world.refusals import ConfigError
 
@@ -84,7 +85,10 @@ def _beams(observation: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     if isinstance(observation, Mapping):
         scan = np.asarray(observation["scan"], np.float64)
         return scan, np.linspace(0.0, 2.0 * math.pi, len(scan), endpoint=False)
-    return np.asarray(observation, np.float64)[: len(_BEAM_ANGLES)], _BEAM_ANGLES
+    numbers = np.asarray(observation, np.float64)
+    if len(numbers) > SECTORS:
+        return numbers[:SECTORS], np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
+    return numbers[: len(_BEAM_ANGLES)], _BEAM_ANGLES
 
 
 def _decision_period(env: Any) -> float:

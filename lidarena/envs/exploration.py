@@ -51,6 +51,10 @@ class ExplorationEnv(gym.Env[Any, Any]):
     | 5   | previous action / 2 (continuous: two numbers, each mapped to [0, 1]) |
     | 6   | completeness; with ``reward="d_optimality"`` the entropy of the particles' weights / ln N |
 
+    ``observation="sectors"``, ``Box(0, 1, (38,), float32)``: the same, except that 0–35 are the nearest hits in 36
+    sectors of 10 degrees, the first one centred straight ahead, counter-clockwise. A wall's end between two of the five
+    beams cannot hide from it.
+
     ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
 
     ## Rewards

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.drive_actions import action_space, commands_of
 from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
-from lidarena.envs.exploration_observation import MapObserver, Observer, PaperObserver
+from lidarena.envs.exploration_observation import make_observer
 from lidarena.envs.exploration_options import ExplorationOptions
 from lidarena.envs.exploration_picture import PathRecorder
 
@@ -43,11 +43,7 @@ class ExplorationEpisodes:
         self.single_action_space: gym.Space[Any] = action_space(options.action)
         parts = 1 if options.action == "discrete" else 2
         uncertain = options.reward == "d_optimality"
-        self.observer: Observer = (
-            PaperObserver(parts, uncertain)
-            if options.observation == "da_slam"
-            else MapObserver(parts, self.core.beam.beams)
-        )
+        self.observer = make_observer(options.observation, parts, uncertain, self.core.beam.beams)
         self.single_observation_space = self.observer.space
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
         self._steps = np.zeros(worlds, np.int64)

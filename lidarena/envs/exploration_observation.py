@@ -1,4 +1,4 @@
-"""What an exploration agent sees: the paper's seven numbers, or a dictionary with a picture of the map around it."""
+"""What an exploration agent sees: the paper's seven numbers, ranges all around, or a picture of the map around it."""
 
 import math
 from typing import Any, Protocol
@@ -12,6 +12,8 @@ from lidarena.world.kernels import leaf
 
 FRONT_BEAMS = (0, 45, 90, 315, 270)
 """Beams of the paper's observation: 0, 45, 90, -45 and -90 degrees."""
+SECTORS = 36
+"""Sectors of equal width, the first one centred straight ahead."""
 PICTURE = 64
 """Rows and columns of the egocentric picture."""
 PICTURE_CELL = 0.1
@@ -46,15 +48,23 @@ class PaperObserver:
         uncertain: Whether the last entry is the entropy.
     """
 
+    ranges = len(FRONT_BEAMS)
+
     def __init__(self, action_parts: int, uncertain: bool) -> None:
         self._uncertain = uncertain
-        self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (len(FRONT_BEAMS) + action_parts + 1,), np.float32)
+        self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (self.ranges + action_parts + 1,), np.float32)
 
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
-        """``(worlds, 6 + k)`` float32."""
-        beams = core.sensors.scans[:, 0, FRONT_BEAMS] / core.beam.max_range
+        """``(worlds, ranges + 1 + k)`` float32."""
         last = scaled_entropy(core) if self._uncertain else core.completeness
-        return np.concatenate([beams, previous, last[:, None]], axis=1).astype(np.float32)
+        return np.concatenate(
+            [self._look(core) / core.beam.max_range, previous, last[:, None]], axis=1, dtype=np.float32
+        )
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        """The ranges that are seen [m], (worlds, ranges)."""
+        seen: NDArray[np.float32] = core.sensors.scans[:, 0, FRONT_BEAMS]
+        return seen
 
     def pick(self, batch: NDArray[np.float32], world: int) -> NDArray[np.float32]:
         """Row ``world``."""
@@ -64,6 +74,23 @@ class PaperObserver:
     def put(self, batch: NDArray[np.float32], world: int, source: NDArray[np.float32]) -> None:
         """Overwrite row ``world``."""
         batch[world] = source[world]
+
+
+class SectorObserver(PaperObserver):
+    """The paper's state with the nearest hit in each of ``SECTORS`` sectors in place of five single beams.
+
+    Nothing fits between the beams of a sector, where the paper's five leave 45 degrees unseen.
+    """
+
+    ranges = SECTORS
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        scans = core.sensors.scans[:, 0]
+        width = scans.shape[1] // SECTORS
+        nearest: NDArray[np.float32] = (
+            np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width).min(axis=2)
+        )
+        return nearest
 
 
 class MapObserver:
@@ -111,6 +138,13 @@ class MapObserver:
         """Overwrite entry ``world`` of every array."""
         for name, array in batch.items():
             array[world] = source[name][world]
+
+
+def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> Observer:
+    """Make what the keyword ``observation`` names."""
+    if kind == "map":
+        return MapObserver(action_parts, beams)
+    return (PaperObserver if kind == "da_slam" else SectorObserver)(action_parts, uncertain)
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ prints 1, with which every step is worth 2."""
 MapSpec = str | Floorplan
 _CHOICES = {
     "reward": ("completeness", "d_optimality"),
-    "observation": ("da_slam", "map"),
+    "observation": ("da_slam", "sectors", "map"),
     "action": ("discrete", "continuous"),
     "slam": ("rbpf", "truth"),
     "render_mode": (None, "rgb_array"),
@@ -39,7 +39,8 @@ class ExplorationOptions:
         map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them
             from which every reset draws one.
         reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
-        observation: ``"da_slam"`` (the paper's) or ``"map"`` (a dictionary with an egocentric picture of the map).
+        observation: ``"da_slam"`` (the paper's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
+            five beams) or ``"map"`` (a dictionary with an egocentric picture of the map).
         action: ``"discrete"`` (the paper's three) or ``"continuous"``.
         slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.
         particles: Of the filter.

@@ -1,6 +1,8 @@
+import gymnasium as gym
 import numpy as np
 import pytest
 
+import lidarena  # noqa: F401
 from lidarena.baselines import make
 from lidarena.world.refusals import ConfigError
 from tests.baselines.fake_exploration import FakeExploration, drawn, explore
@@ -231,3 +233,17 @@ def test_escapes_from_a_start_too_near_to_a_wall():
 def test_options_out_of_range_are_refused(option, value):
     with pytest.raises(ConfigError, match=option):
         make("frontier", FakeExploration(PILLARS, (0.8, 0.8, 0.5)), **{option: value})
+
+
+def test_frontier_explores_with_any_observation() -> None:
+    known = []
+    for observation in ("da_slam", "sectors", "map"):
+        env = gym.make("lidarena/Env2-v0", observation=observation, slam="truth", max_episode_steps=300)
+        policy = make("frontier", env)
+        seen, info = env.reset(seed=0)
+        policy.reset(seed=0)
+        for _ in range(200):
+            seen, _, terminated, _, info = env.step(policy.act(seen, info))
+            assert not terminated
+        known.append(info["completeness"])
+    assert min(known) > 0.6

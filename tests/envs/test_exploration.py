@@ -20,6 +20,7 @@ def test_gymnasium_finds_nothing_to_complain_about(name: str) -> None:
 @pytest.mark.parametrize(
     "keywords",
     [
+        {"observation": "sectors"},
         {"observation": "map"},
         {"observation": "map", "action": "continuous"},
         {"reward": "d_optimality", "action": "continuous"},
@@ -104,6 +105,16 @@ def test_gym_makes_own_limit_truncates_in_every_mode() -> None:
     assert [batch.step(np.ones(2, int))[3].tolist() for _ in range(3)] == [[False] * 2, [False] * 2, [True] * 2]
     assert gym.make("lidarena/Env3-v0").spec.max_episode_steps == 1000
     assert ExplorationEnv(map="env3")._episodes.options.max_episode_steps == 1000
+
+
+def test_a_sector_holds_the_nearest_of_its_beams() -> None:
+    env = ExplorationEnv(map="env3", observation="sectors", slam="truth")
+    observation, info = env.reset(seed=3)
+    scan = env._episodes.core.sensors.scans[0, 0] / np.float32(3.5)
+    assert observation.shape == (38,) and observation[-1] == pytest.approx(info["completeness"], abs=1e-6)
+    for sector in range(36):
+        beams = np.arange(10 * sector - 5, 10 * sector + 5) % 360
+        assert observation[sector] == scan[beams].min()
 
 
 def test_the_observation_holds_beams_previous_action_and_completeness() -> None:
