@@ -246,4 +246,4 @@ def test_frontier_explores_with_any_observation() -> None:
             seen, _, terminated, _, info = env.step(policy.act(seen, info))
             assert not terminated
         known.append(info["completeness"])
-    assert min(known) > 0.6
+    assert min(known) > 0.4
