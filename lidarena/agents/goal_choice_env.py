@@ -15,7 +15,7 @@ from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
-_WEIGHTS = {"path": 1.0, "uncertainty": 2.0, "coverage": 5.0, "collision": 3.0}
+_WEIGHTS = {"path": 1.0, "uncertainty": 3.0, "coverage": 5.0, "collision": 3.0}
 _PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]; paths are weighed against it."""
 _USUAL, _USUAL_STEPS = 1.3e-4, 50

@@ -35,8 +35,8 @@ NAMES = (
 )
 """The features, in their order."""
 FEATURES = len(NAMES)
-RULE = {"way": -2.0, "pursued": 1.5, "turn": -0.7, "home": -0.7, "revisit": -4.0, "end": -5.0}
-"""Weights of a sound rule to begin learning from: the nearest, rather near the start, without driving to and fro."""
+RULE = {"size": 6.0, "way": -0.7, "pursued": 1.5, "small": -4.0, "revisit": -2.0, "end": -2.5}
+"""Weights of a sound rule to begin learning from: the largest, as ``frontier``, but rather near."""
 
 _SIGHT, _BEEN, _LEG = 1.5, 2.0, 0.6  # (m)
 _SMALL = 0.5  # (m)
