@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
+from lidarena.envs.frontier_compass import feel_frontiers
 from lidarena.world.kernels import leaf
 
 FRONT_BEAMS = (0, 45, 90, 315, 270)
@@ -48,14 +49,14 @@ class PaperObserver:
         uncertain: Whether the last entry is the entropy.
     """
 
-    ranges = len(FRONT_BEAMS)
+    looks = len(FRONT_BEAMS)
 
     def __init__(self, action_parts: int, uncertain: bool) -> None:
         self._uncertain = uncertain
-        self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (self.ranges + action_parts + 1,), np.float32)
+        self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (self.looks + action_parts + 1,), np.float32)
 
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
-        """``(worlds, ranges + 1 + k)`` float32."""
+        """``(worlds, looks + 1 + k)`` float32."""
         last = scaled_entropy(core) if self._uncertain else core.completeness
         return np.concatenate(
             [self._look(core) / core.beam.max_range, previous, last[:, None]], axis=1, dtype=np.float32
@@ -82,7 +83,7 @@ class SectorObserver(PaperObserver):
     Nothing fits between the beams of a sector, where the paper's five leave 45 degrees unseen.
     """
 
-    ranges = SECTORS
+    looks = SECTORS
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
         scans = core.sensors.scans[:, 0]
@@ -91,6 +92,17 @@ class SectorObserver(PaperObserver):
             np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width).min(axis=2)
         )
         return nearest
+
+
+class CompassObserver(SectorObserver):
+    """The sectors' nearest hits, and after them how much of the map's edge lies in each, see ``feel_frontiers``."""
+
+    looks = 2 * SECTORS
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        edge = np.empty((core.worlds, SECTORS), np.float32)
+        feel_frontiers(core.maps.occupancy, core.maps.origin, core.estimate, RESOLUTION, edge)
+        return np.concatenate([super()._look(core), edge], axis=1)
 
 
 class MapObserver:
@@ -144,7 +156,8 @@ def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> 
     """Make what the keyword ``observation`` names."""
     if kind == "map":
         return MapObserver(action_parts, beams)
-    return (PaperObserver if kind == "da_slam" else SectorObserver)(action_parts, uncertain)
+    flat = {"da_slam": PaperObserver, "sectors": SectorObserver, "compass": CompassObserver}
+    return flat[kind](action_parts, uncertain)
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:

@@ -16,7 +16,7 @@ prints 1, with which every step is worth 2."""
 MapSpec = str | Floorplan
 _CHOICES = {
     "reward": ("completeness", "d_optimality"),
-    "observation": ("da_slam", "sectors", "map"),
+    "observation": ("da_slam", "sectors", "compass", "map"),
     "action": ("discrete", "continuous"),
     "slam": ("rbpf", "truth"),
     "render_mode": (None, "rgb_array"),
@@ -40,7 +40,8 @@ class ExplorationOptions:
             from which every reset draws one.
         reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
         observation: ``"da_slam"`` (the paper's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
-            five beams) or ``"map"`` (a dictionary with an egocentric picture of the map).
+            five beams), ``"compass"`` (that, and where the edge of the known map lies) or ``"map"`` (a dictionary with
+            an egocentric picture of the map).
         action: ``"discrete"`` (the paper's three) or ``"continuous"``.
         slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.
         particles: Of the filter.

@@ -237,7 +237,7 @@ def test_options_out_of_range_are_refused(option, value):
 
 def test_frontier_explores_with_any_observation() -> None:
     known = []
-    for observation in ("da_slam", "sectors", "map"):
+    for observation in ("da_slam", "sectors", "compass", "map"):
         env = gym.make("lidarena/Env2-v0", observation=observation, slam="truth", max_episode_steps=300)
         policy = make("frontier", env)
         seen, info = env.reset(seed=0)

@@ -21,6 +21,7 @@ def test_gymnasium_finds_nothing_to_complain_about(name: str) -> None:
     "keywords",
     [
         {"observation": "sectors"},
+        {"observation": "compass"},
         {"observation": "map"},
         {"observation": "map", "action": "continuous"},
         {"reward": "d_optimality", "action": "continuous"},
