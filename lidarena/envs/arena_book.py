@@ -1,5 +1,6 @@
 """Which arena an episode takes place in: one of a list, or another of a family every time."""
 
+import math
 from dataclasses import dataclass, replace
 from functools import lru_cache
 
@@ -9,8 +10,9 @@ from numpy.typing import NDArray
 from lidarena.envs.arena_options import ArenaOptions, ArenaSpec
 from lidarena.planning.circle_grid import astar_path
 from lidarena.planning.field_scene import make_scene
+from lidarena.planning.regression_search import path_length
 from lidarena.world.arenas import Arena, load_arena
-from lidarena.world.barn import barn_indices
+from lidarena.world.barn import barn_indices, load_barn
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.refusals import ConfigError
 
@@ -22,7 +24,8 @@ _LEAST_OBSTACLE = 0.5
 """Obstacles have at least this radius in a 100 m room: the paper's are points, which no lidar sees [m]."""
 _LEAST_ROBOT = 0.1
 """The robot has at least this radius in a 100 m room: rigid bodies have an extent, the paper's point has none [m]."""
-FAMILIES = ("random", "u_trap", "barn")
+BARN_SPEED = 2.0
+"""At which BARN drives its reference paths [m/s]."""
 
 
 @dataclass(frozen=True)
@@ -32,12 +35,12 @@ class Course:
     Attributes:
         arena: Circles, start, goal, bounds and robot; no circle and no robot is a point.
         plan: What robot and lidar meet.
-        number: Of the arena in its family; 0 for one that stands alone.
+        optimal_time: What BARN scores a drive by: its reference path at 2 m/s [s]; NaN in all other arenas.
     """
 
     arena: Arena
     plan: Floorplan
-    number: int
+    optimal_time: float = math.nan
 
 
 @dataclass(frozen=True)
@@ -111,8 +114,8 @@ class ArenaBook:
         path = options.path if text.startswith("barn:") else None
         ends = tuple(None if end is None else tuple(end) for end in (options.start, options.goal))
         if not isinstance(spec, str):
-            return _laid_out(load_arena(spec, start=ends[0], goal=ends[1]), number)
-        course = _named_course(spec, path, chosen.density, ends, number)
+            return _laid_out(load_arena(spec, start=ends[0], goal=ends[1]))
+        course = _named_course(spec, path, chosen.density, ends)
         if options.solvable and chosen.spec == "random" and not _has_path(course.arena):
             return self.course(entry, number + _NEXT_TRY)
         return course
@@ -133,9 +136,13 @@ def _entries_of(spec: ArenaSpec, options: ArenaOptions) -> list[_Entry]:
 
 @lru_cache(maxsize=8192)
 def _named_course(
-    spec: str, path: str | None, density: float | None, ends: tuple[tuple[float, ...] | None, ...], number: int
+    spec: str, path: str | None, density: float | None, ends: tuple[tuple[float, ...] | None, ...]
 ) -> Course:
-    return _laid_out(load_arena(spec, path=path, density=density, start=ends[0], goal=ends[1]), number)
+    course = _laid_out(load_arena(spec, path=path, density=density, start=ends[0], goal=ends[1]))
+    if path is None:
+        return course
+    reference = load_barn(int(spec.partition(":")[2]), path).reference
+    return replace(course, optimal_time=path_length(reference) / BARN_SPEED)
 
 
 @lru_cache(maxsize=8192)
@@ -150,7 +157,7 @@ def _has_path(arena: Arena) -> bool:
     )
 
 
-def _laid_out(arena: Arena, number: int) -> Course:
+def _laid_out(arena: Arena) -> Course:
     """Give every circle and the robot an extent, refuse ends inside of obstacles, and draw the room."""
     circles = arena.circles.copy()
     circles[:, 2] = np.maximum(circles[:, 2], _LEAST_OBSTACLE * arena.scale if arena.plan is None else 0.0)
@@ -160,8 +167,8 @@ def _laid_out(arena: Arena, number: int) -> Course:
     heading = float(np.arctan2(arena.goal[1] - arena.start[1], arena.goal[0] - arena.start[0]))
     start = (*arena.start, heading)
     if arena.plan is not None:
-        return Course(arena, replace(arena.plan, start=start), number)
-    return Course(arena, Floorplan(arena.name, _room(arena.bounds), circles, arena.bounds, start), number)
+        return Course(arena, replace(arena.plan, start=start))
+    return Course(arena, Floorplan(arena.name, _room(arena.bounds), circles, arena.bounds, start))
 
 
 def vicinity(plan: Floorplan, x: float, y: float, reach: float) -> Floorplan:

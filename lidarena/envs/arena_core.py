@@ -64,6 +64,7 @@ class ArenaCore:
         self.courses: list[Course | None] = [None] * worlds
         self.circles = np.empty(worlds, object)
         self.bounds = np.zeros((worlds, 4))
+        self.optimal_time = np.zeros(worlds)
         self.goals = np.zeros((worlds, 2))
         self.radii = np.zeros(worlds)
         self.drawn = np.zeros((worlds, 2), np.int64)
@@ -139,7 +140,7 @@ class ArenaCore:
         self.courses[world] = course
         self.circles[world] = course.arena.circles
         self.bounds[world], self.goals[world] = course.arena.bounds, course.arena.goal
-        self.radii[world] = course.arena.robot_radius
+        self.radii[world], self.optimal_time[world] = course.arena.robot_radius, course.optimal_time
         self._furnish(world, course)
 
     def _place(self, world: int, plan: Floorplan, pose: tuple[float, float, float]) -> None:

@@ -137,7 +137,8 @@ class ArenaEpisodes:
         if self.options.knowledge == "map":
             info |= known
         if self.options.expose_truth:
-            info["truth"] = known | {"pose": info["pose"].copy(), "path_length": info["path_length"].copy()}
+            own = {name: info[name].copy() for name in ("pose", "path_length")}
+            info["truth"] = known | own | {"optimal_time": core.optimal_time.copy()}
         return info
 
     def arrays(self) -> dict[str, NDArray[Any]]:

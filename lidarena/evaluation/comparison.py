@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
 
 from rich.console import Console
@@ -95,6 +96,8 @@ def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[
     tasks = list_tasks(config, videos)
     with report_progress(len(tasks), console) as advance:
         episodes = run_tasks(tasks, config.workers, lambda task: advance(str(task)))
-    blocks = [episodes[start : start + config.episodes] for start in range(0, len(episodes), config.episodes)]
-    cells = iter(blocks)
-    return [[Cell(env, policy, next(cells)) for policy in config.policies] for env in config.envs]
+    left = iter(episodes)
+    return [
+        [Cell(env, policy, list(islice(left, len(config.seeds_in(env))))) for policy in config.policies]
+        for env in config.envs
+    ]

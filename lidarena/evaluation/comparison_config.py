@@ -24,10 +24,12 @@ class EnvEntry(ConfigModel):
         id: Gymnasium's, such as ``lidarena/Env1-v0``; ``module:id`` imports a module of yours first.
         name: What tables and pictures call it; the id without its namespace if left out.
         keywords: Handed to `gymnasium.make`, such as ``map`` or ``max_episode_steps``.
+        episodes: Per policy in this environment; the comparison's ``episodes`` if left out.
     """
 
     id: str = Field(min_length=1)
     name: str | None = None
+    episodes: int | None = Field(default=None, ge=1, le=100_000)
     keywords: dict[str, Any] = Field(default_factory=dict)
 
     @model_validator(mode="after")
@@ -116,6 +118,10 @@ class ComparisonConfig(ConfigModel):
     def seeds(self) -> range:
         """Seeds of the episodes, the same for every policy."""
         return range(self.seed, self.seed + self.episodes)
+
+    def seeds_in(self, env: EnvEntry) -> range:
+        """Seeds of the episodes in an environment that may have a number of its own."""
+        return self.seeds if env.episodes is None else range(self.seed, self.seed + env.episodes)
 
 
 def file_name(label: str) -> str:

@@ -79,7 +79,7 @@ def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
     tasks = []
     for env in config.envs:
         for policy in config.policies:
-            for seed in config.seeds:
+            for seed in config.seeds_in(env):
                 first = seed == config.seed
                 film = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
                 tasks.append(Task(env, policy, seed, config.pictures and first, film))
