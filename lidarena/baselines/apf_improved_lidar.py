@@ -8,10 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines.arena_view import Wheel
-from lidarena.baselines.path_driving import NO_WALLS, PathFollower
+from lidarena.baselines.path_driving import PathFollower
 from lidarena.baselines.registry import register
 from lidarena.baselines.seen_obstacles import SeenObstacles, hits_of
-from lidarena.planning.disc_clearance import segment_is_free
 from lidarena.planning.field_parameters import FieldWarning
 from lidarena.planning.potential_field import plan_path
 from lidarena.world.refusals import ConfigError
@@ -66,19 +65,13 @@ class ImprovedLidarField:
         new = self._seen.add(hits_of(info, float(np.max(info["scan"])))[0])
         points = self._seen.points()
         away = np.hypot(*(points - pose[:2]).T)
-        if self._follower is None or (new and self._blocked(points, radius * (1.0 + self._spare))):
+        wide = np.column_stack([points, np.full(len(points), radius * (1.0 + self._spare))])
+        if self._follower is None or (new and self._follower.is_blocked(wide)):
             discs = np.column_stack([points, np.minimum(radius, _CLOSE * away)])
             path = self._search(discs, pose[:2], info["goal"])
             self._follower = PathFollower(path, self._wheel.step, discs)
             self.plans += 1
         return self._wheel.towards(self._follower.heading(pose), pose)
-
-    def _blocked(self, points: NDArray[np.float64], radius: float) -> bool:
-        """Whether a remembered hit is within a radius of the path ahead."""
-        assert self._follower is not None
-        discs = np.column_stack([points, np.full(len(points), radius)])
-        ahead, blocker = self._follower.ahead()[:: 4], np.zeros(1, np.int64)
-        return any(not segment_is_free(*a, *b, discs, NO_WALLS, blocker) for a, b in zip(ahead, ahead[1:], strict=False))
 
     def _search(
         self, discs: NDArray[np.float64], place: NDArray[np.float64], goal: NDArray[np.float64]

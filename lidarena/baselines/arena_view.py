@@ -29,7 +29,7 @@ class KnownWorld(NamedTuple):
     radius: float
 
     @property
-    def scene(self) -> tuple[Any, ...]:
+    def scene(self) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
         """Circles, start and goal, as the planners take them."""
         return self.circles, self.pose[:2], self.goal
 

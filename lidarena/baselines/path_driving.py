@@ -1,4 +1,4 @@
-"""Driving along a planned path at constant speed: every step is a chord of the path, or turns aside from what it hits."""
+"""Driving along a planned path at constant speed: a step is a chord of the path, or turns aside from what it hits."""
 
 import math
 
@@ -65,10 +65,10 @@ def aim(
     """
     last = points.shape[0] - 1
     target = first
-    for k in range(first, min(first + _WINDOW, last) + 1):
-        if math.hypot(points[k, 0] - x, points[k, 1] - y) <= step:
-            target = k
-    target = min(target + 1, last)
+    while (
+        target < last and target < first + _WINDOW and math.hypot(points[target, 0] - x, points[target, 1] - y) < step
+    ):
+        target += 1  # the first point a step away: a later one may lie beyond a bend of the path
     wanted = math.atan2(points[target, 1] - y, points[target, 0] - x)
     second = math.nan
     for k in range(2 * _TURNS + 1):
@@ -80,6 +80,21 @@ def aim(
             if math.isnan(second):
                 second = heading
     return target, wanted if math.isnan(second) else second
+
+
+@leaf
+def is_free(
+    points: NDArray[np.float64],
+    first: int,
+    discs: NDArray[np.float64],
+    walls: NDArray[np.float64],
+    blocker: NDArray[np.int64],
+) -> bool:
+    """Whether a path (P, 2) touches no disc (K, 3) and no wall (4,) from point number ``first`` on."""
+    for k in range(first, points.shape[0] - 1):
+        if not segment_is_free(points[k, 0], points[k, 1], points[k + 1, 0], points[k + 1, 1], discs, walls, blocker):
+            return False
+    return True
 
 
 class PathFollower:
@@ -126,6 +141,6 @@ class PathFollower:
         away = self._points[-1] - place[:2]
         return self._next == len(self._points) - 1 and float(np.hypot(*away)) <= self._step
 
-    def ahead(self) -> NDArray[np.float64]:
-        """The points (P, 2) of the path from the one last aimed at on [m]."""
-        return self._points[self._next :]
+    def is_blocked(self, discs: NDArray[np.float64]) -> bool:
+        """Whether a disc (K, 3) lies on the path from the point last aimed at on [m]."""
+        return not is_free(self._points, self._next, discs, NO_WALLS, np.zeros(1, np.int64))

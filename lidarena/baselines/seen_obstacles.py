@@ -45,7 +45,8 @@ def nearest_of_each(info: dict[str, Any], longest: float) -> NDArray[np.float64]
     group = np.cumsum(new) % max(int(new.sum()), 1)  # the run before the first edge belongs to the last one
     order = np.lexsort((ranges, group))
     firsts = np.concatenate([[True], np.diff(group[order]) > 0])
-    return points[order[firsts]]
+    nearest: NDArray[np.float64] = points[order[firsts]]
+    return nearest
 
 
 class SeenObstacles:

@@ -27,8 +27,8 @@ class ArenaEnv(gym.Env[Any, Any]):
 
     The world of Yang et al., "A New Method for Robot Path Planning Based Artificial Potential Field": a room of 100 m
     with circular obstacles, a start and a goal. The robot is a disc that moves at constant speed in a heading that it
-    chooses anew in every decision period; rigid bodies are pymunk's. The BARN worlds and floor plans keep their own size:
-    what is not given as a keyword is to scale, a power of ten.
+    chooses anew in every decision period; rigid bodies are pymunk's. The BARN worlds and floor plans keep their own
+    size: what is not given as a keyword is to scale, a power of ten.
 
     ## Action space
 

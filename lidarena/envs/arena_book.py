@@ -73,8 +73,8 @@ class ArenaBook:
         scales = {self.course(k, self._number(entry, 0)).arena.scale for k, entry in enumerate(self._entries)}
         if len(scales) > 1:
             raise ConfigError(
-                f"the arenas have the scales {sorted(scales)}; those of one environment must have the same, since speed "
-                "and lidar go with it"
+                f"the arenas have the scales {sorted(scales)}; those of one environment must have the same, since "
+                "speed and lidar go with it"
             )
         self.scale = scales.pop()
 

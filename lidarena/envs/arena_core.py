@@ -154,7 +154,9 @@ class ArenaCore:
         course = self.courses[world]
         assert course is not None
         x, y, theta = self.physics.poses[world, 0].tolist()
-        self._place(world, vicinity(course.plan, x, y, 1.1 * self.step_length + 1.1 * float(self.radii[world])), (x, y, theta))
+        self._place(
+            world, vicinity(course.plan, x, y, 1.1 * self.step_length + 1.1 * float(self.radii[world])), (x, y, theta)
+        )
 
     def step(self, turns: NDArray[np.float64]) -> None:
         """Turn every robot by ``turns`` (worlds,) to the left [rad] and drive for one decision period."""

@@ -20,9 +20,7 @@ _CHOICES = {
     "field": ("robust", "paper", "traditional"),
     "render_mode": (None, "rgb_array"),
 }
-_RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)} | {
-    f"{term}_weight": (0.0, 1e6) for term in REWARD_TERMS
-}
+_RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)} | {f"{term}_weight": (0.0, 1e6) for term in REWARD_TERMS}
 _OPTIONAL_RANGES = {"max_range": (0.01, 1000.0), "decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
 _WHOLE = {"arenas": (1, 10**9), "beams": (4, 3600)}
 

@@ -34,7 +34,9 @@ def turns_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
             raise ActionError(f"action {_show(actions, worlds)} is out of range; 0 to {HEADINGS - 1} are allowed")
         return values * (2.0 * math.pi / HEADINGS)
     if values.shape != (worlds, 1) or values.dtype.kind not in "iuf":
-        raise ActionError(f"action {_show(actions, worlds)} is not an array of one number, the turn over pi, from -1 to 1")
+        raise ActionError(
+            f"action {_show(actions, worlds)} is not an array of one number, the turn over pi, from -1 to 1"
+        )
     numbers = values[:, 0].astype(np.float64)
     if not (np.abs(numbers) <= 1.0).all():
         raise ActionError(f"action {_show(actions, worlds)} is NaN or out of range; a number from -1 to 1 is allowed")

@@ -78,4 +78,5 @@ def names_for(family: str | None) -> frozenset[str]:
     """The measures of a family; those of exploration for an environment of none."""
     return FAMILIES.get(family or "", FAMILIES["exploration"])
 
+
 BY_NAME = {measure.name: measure for measure in MEASURES}

@@ -188,7 +188,9 @@ def _draw_trace(axes: "Axes", trace: Trace, episode: Episode, box: tuple[float, 
     path = trace.true if len(trace.true) else trace.estimated
     axes.plot(*path[0], "o", color="#009E73", markeredgecolor="white", markersize=9, label="start", zorder=5)
     if len(trace.goal):
-        axes.plot(*trace.goal[0], "*", color="#E69F00", markeredgecolor="black", markersize=14, label="goal", zorder=4.5)
+        axes.plot(
+            *trace.goal[0], "*", color="#E69F00", markeredgecolor="black", markersize=14, label="goal", zorder=4.5
+        )
     crash = episode.ending == "collision"
     axes.plot(
         *path[-1],

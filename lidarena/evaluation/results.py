@@ -70,7 +70,8 @@ def contenders(rows: Sequence[Row], measure: Measure) -> list[Row]:
     """Return the rows of one environment among which a measure may be compared.
 
     Where `Measure.needs_coverage`, those are the rows whose completeness cannot be told from the best one: a policy
-    that crashes at once drives the shortest path, and that is no merit. `Measure.needs_success` is the same for success.
+    that crashes at once drives the shortest path, and that is no merit. `Measure.needs_success` is the same for
+    success.
     """
     measured = [row for row in rows if measure.name in row.metrics]
     needed = "completeness" if measure.needs_coverage else "success" if measure.needs_success else None

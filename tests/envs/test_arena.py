@@ -76,7 +76,9 @@ def test_discrete_headings_are_sixteen() -> None:
         env = ArenaEnv(arena="yang", action="discrete")
         env.reset(seed=0)
         _, _, _, _, info = env.step(k)
-        assert math.remainder(info["pose"][2] - math.pi / 4 - k * math.pi / 8, 2 * math.pi) == pytest.approx(0, abs=1e-9)
+        assert math.remainder(info["pose"][2] - math.pi / 4 - k * math.pi / 8, 2 * math.pi) == pytest.approx(
+            0, abs=1e-9
+        )
 
 
 def test_sizes_are_to_scale() -> None:

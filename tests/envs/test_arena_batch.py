@@ -1,4 +1,4 @@
-"""One implementation: the batch of arenas and the single arena agree to the bit, and a saved batch goes on to the bit."""
+"""The batch of arenas and the single arena agree to the bit, and a saved batch goes on to the bit."""
 
 from typing import Any
 
