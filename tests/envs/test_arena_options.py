@@ -48,5 +48,5 @@ def test_absurd_lengths_and_times_are_refused(name: str, value: object) -> None:
 
 @pytest.mark.parametrize("density", [-0.1, 0.31, float("nan"), "0.1", [0.1, 2.0], None])
 def test_absurd_densities_are_refused(density: object) -> None:
-    with pytest.raises((ConfigError, TypeError), match="density|iterable"):
+    with pytest.raises(ConfigError, match="density"):
         ArenaOptions.checked({"density": density})
