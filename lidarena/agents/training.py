@@ -135,6 +135,18 @@ def first_world_seed(seed: int) -> int:
     return int(np.random.SeedSequence(seed).generate_state(1)[0])
 
 
+_EPISODE_MEANS = {
+    "r": "ep_rew_mean",
+    "l": "ep_len_mean",
+    "completeness": "completeness",
+    "success": "success_rate",
+    "collision": "collision_rate",
+}
+"""What an ended episode tells, and what its mean is called."""
+_SUMMARY = {"ep_rew_mean": "return {:.1f}", "completeness": "completeness {:.0%}", "success_rate": "success {:.0%}"}
+_SUMMARY |= {"collision_rate": "collisions {:.0%}"}
+
+
 class _Stopped(Exception):  # noqa: N818  not an error: it carries the wish to stop out of Stable-Baselines3's loop
     pass
 
@@ -198,8 +210,7 @@ class _Run:
         values = {name: float(value) for name, value in self.model.logger.name_to_value.items()}
         self.model.logger.name_to_value.clear()
         episodes = list(self.model.ep_info_buffer or ())
-        names = {"r": "ep_rew_mean", "l": "ep_len_mean", "completeness": "completeness", "collision": "collision_rate"}
-        for key, name in names.items():
+        for key, name in _EPISODE_MEANS.items():
             known = [episode[key] for episode in episodes if key in episode]
             if known:
                 values[f"rollout/{name}"] = sum(known) / len(known)
@@ -292,12 +303,6 @@ def _schedule(value: Any) -> Any:
 
 
 def _summary(values: dict[str, float]) -> str:
-    """Return, completeness and collisions of the last episodes, in words."""
-    shown = []
-    if "rollout/ep_rew_mean" in values:
-        shown.append(f"return {values['rollout/ep_rew_mean']:.1f}")
-    if "rollout/completeness" in values:
-        shown.append(f"completeness {values['rollout/completeness']:.0%}")
-    if "rollout/collision_rate" in values:
-        shown.append(f"collisions {values['rollout/collision_rate']:.0%}")
-    return "  ".join(shown)
+    """What the display shows of the last episodes, as far as the environment tells it."""
+    shown = {name: form for name, form in _SUMMARY.items() if f"rollout/{name}" in values}
+    return "  ".join(form.format(values[f"rollout/{name}"]) for name, form in shown.items())

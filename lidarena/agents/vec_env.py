@@ -16,7 +16,7 @@ from lidarena.world.refusals import ConfigError
 
 Arrays = dict[str, NDArray[Any]]
 
-_LOGGED = ("completeness", "collision")
+_LOGGED = ("completeness", "success", "collision")
 
 
 @runtime_checkable
@@ -38,8 +38,8 @@ class BatchVecEnv(VecEnv):
     - every array that `step_wait` returns is fresh, since the rollout buffer keeps the last one until the next step;
     - the ``info`` of a world that has just ended holds ``terminal_observation``, ``TimeLimit.truncated`` (true only if
       it was cut off without having terminated) and ``episode``: ``r`` return, ``l`` length in steps, ``t`` seconds
-      since the adapter was made, and, where the environment tells them, ``completeness`` (fraction) and ``collision``
-      (0 or 1). The ``info`` of every other world is empty.
+      since the adapter was made, and, where the environment tells them, ``completeness`` (fraction), ``success`` and
+      ``collision`` (0 or 1). The ``info`` of every other world is empty.
 
     Attributes:
         env: The batch.

@@ -10,7 +10,11 @@ from lidarena.world.refusals import ConfigError, suggest
 
 Made = TypeVar("Made", bound=Callable[..., Policy])
 
-_FAMILY_OF_ID = {"Env": "exploration", "Exploration": "exploration"}  # begins of ids, after "lidarena/"
+_FAMILY_OF_ID = {
+    "Env": "exploration",
+    "Exploration": "exploration",
+    "Arena": "arena",
+}  # begins of ids, after "lidarena/"
 
 
 @dataclass(frozen=True)

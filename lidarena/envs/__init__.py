@@ -1,7 +1,8 @@
 """The environment families as Gymnasium environments, and their registry."""
 
+from lidarena.envs.arena import ArenaEnv, BatchedArena
 from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import register_all
 from lidarena.envs.worker_threads import set_num_threads
 
-__all__ = ["BatchedExploration", "ExplorationEnv", "register_all", "set_num_threads"]
+__all__ = ["ArenaEnv", "BatchedArena", "BatchedExploration", "ExplorationEnv", "register_all", "set_num_threads"]

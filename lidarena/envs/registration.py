@@ -4,10 +4,13 @@ from typing import Any
 
 import gymnasium as gym
 
+from lidarena.envs.arena import ArenaEnv
 from lidarena.envs.exploration import ExplorationEnv
 
 EPISODE_STEPS = 1000
 """The paper's training cap."""
+ARENA_STEPS = 500
+"""Five times what it takes to cross an arena."""
 EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {
     "lidarena/Exploration-v0": "willow_lobby"
 }
@@ -16,6 +19,11 @@ EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {
 def make_single(max_episode_steps: int | None = None, **keywords: Any) -> ExplorationEnv:
     """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
     return ExplorationEnv(max_episode_steps=max_episode_steps, **keywords)
+
+
+def make_single_arena(max_episode_steps: int | None = None, **keywords: Any) -> ArenaEnv:
+    """Entry point of ``gym.make``, likewise."""
+    return ArenaEnv(max_episode_steps=max_episode_steps, **keywords)
 
 
 def register_all() -> None:
@@ -29,3 +37,10 @@ def register_all() -> None:
                 max_episode_steps=EPISODE_STEPS,
                 kwargs={"map": plan},
             )
+    if "lidarena/Arena-v0" not in gym.registry:
+        gym.register(
+            id="lidarena/Arena-v0",
+            entry_point="lidarena.envs.registration:make_single_arena",
+            vector_entry_point="lidarena.envs.arena:BatchedArena",
+            max_episode_steps=ARENA_STEPS,
+        )

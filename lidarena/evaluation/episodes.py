@@ -9,7 +9,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines import Policy
+from lidarena.baselines.registry import family_of
+from lidarena.evaluation.arena_measures import measure_drive
 from lidarena.evaluation.map_quality import map_iou
+from lidarena.evaluation.measures import names_for
 from lidarena.evaluation.participants import Env
 from lidarena.evaluation.statistics import geometric_mean
 
@@ -33,6 +36,7 @@ class Trace:
         circles: Pillars of the floor plan as x, y, radius, shape (C, 3) [m].
         nodes: Nodes of the policy's own graph of the world, shape (V, 2) [m]; empty if it keeps none.
         links: Which of them it has joined, shape (L, 2).
+        goal: Where the robot is to go, shape (1, 2) [m]; empty if it has no goal.
     """
 
     true: Floats
@@ -44,6 +48,7 @@ class Trace:
     circles: Floats
     nodes: Floats = field(default_factory=lambda: np.empty((0, 2)))
     links: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
+    goal: Floats = field(default_factory=lambda: np.empty((0, 2)))
 
 
 @dataclass(frozen=True)
@@ -52,8 +57,8 @@ class Episode:
 
     Attributes:
         seed: Of the environment.
-        measures: Values by `measures.MEASURES`' names, in SI units and fractions; NaN where the environment does not
-            report what a measure needs.
+        measures: Values by `measures.MEASURES`' names, those of the environment's family, in SI units and fractions;
+            NaN where the environment does not report what a measure needs.
         ending: Why it ended: ``success``, ``collision``, ``out of time`` or ``policy finished``.
         progress: Time [s] and completeness after each step, shape (T + 1, 2).
         trace: For pictures, if it was asked for.
@@ -119,7 +124,16 @@ def run_episode(
         film(env)
     ending = _ending(terminated, truncated, info)
     trace = _trace(env, policy, info, log) if keep_trace else None
-    return Episode(seed, log.measures(info, ending) | _map_quality(env, info), ending, log.progress(), trace)
+    return Episode(seed, _measures(env, log, info, ending), ending, log.progress(), trace)
+
+
+def _measures(env: Env, log: "_Log", info: Mapping[str, Any], ending: str) -> dict[str, float]:
+    """The measures of the environment's family."""
+    family = family_of(env)
+    values = log.measures(info, ending) | _map_quality(env, info)
+    if family == "arena":
+        values |= measure_drive(info, np.array(log.poses["true"]), log.scalars["clearance"], log.decisions)
+    return {name: value for name, value in values.items() if name in names_for(family)}
 
 
 def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:
@@ -141,7 +155,7 @@ class _Log:
 
     def note(self, info: Mapping[str, Any]) -> None:
         """Copy what changes from step to step; the environment may reuse its arrays."""
-        for key in ("completeness", "time", "d_optimality", "entropy", "entropy_gmapping"):
+        for key in ("completeness", "time", "d_optimality", "entropy", "entropy_gmapping", "clearance"):
             self.scalars.setdefault(key, []).append(float(info.get(key, np.nan)))
         for key, pose in (
             ("true", info.get("truth", {}).get("pose")),
@@ -193,10 +207,13 @@ def _trace(env: Env, policy: Policy, info: Mapping[str, Any], log: _Log) -> Trac
     graph = getattr(policy, "graph", None)
     plan = getattr(env.unwrapped, "floorplan", None)
     true, estimated = (np.array(log.poses[key]) for key in ("true", "estimated"))
+    if np.array_equal(true, estimated):  # the pose is known: there is no belief to draw beside it
+        estimated = np.empty((0, 2))
     return Trace(
         true=true[~np.isnan(true).any(axis=1)],
         estimated=estimated[~np.isnan(estimated).any(axis=1)],
         grid=np.array(info["map"], dtype=np.int8) if "map" in info else None,
+        goal=np.array(info["goal"], np.float64).reshape(1, 2) if "goal" in info else np.empty((0, 2)),
         resolution=float(info.get("resolution", 0.05)),
         origin=np.array(info.get("origin", (0.0, 0.0)), dtype=np.float64),
         edges=np.array(plan.edges) if plan is not None else np.empty((0, 4)),

@@ -18,6 +18,8 @@ class Measure:
         share: Every value is 0 or 1, so the interval is Wilson's.
         needs_coverage: A policy that stops or crashes early gets a small value for nothing, so only those are compared
             whose completeness cannot be told from the best.
+        needs_success: The same for a policy that does not arrive: only episodes with success have a value, and only
+            policies are compared whose share of successes cannot be told from the best.
         main: In the short tables too, not only in `results.json`, `table.csv` and `table.md`.
     """
 
@@ -29,6 +31,7 @@ class Measure:
     better: Literal["high", "low"] | None = None
     share: bool = False
     needs_coverage: bool = False
+    needs_success: bool = False
     main: bool = False
 
     @property
@@ -47,6 +50,10 @@ MEASURES: tuple[Measure, ...] = (
     Measure("d_optimality", "D-optimality", "10⁻³", 1000, better="low", needs_coverage=True, main=True),
     Measure("trajectory_error", "Pose error", "cm", 100, "m", "low", needs_coverage=True, main=True),
     Measure("map_iou", "Map IoU", "%", 100, better="high", needs_coverage=True, main=True),
+    Measure("path_ratio", "Path over A*'s", better="low", needs_success=True, main=True),
+    Measure("least_clearance", "Clearance", "m", 1, "m", "high", needs_success=True, main=True),
+    Measure("smoothness", "Turning", "rad/m", 1, "rad/m", "low", needs_success=True, main=True),
+    Measure("barn_score", "BARN score", better="high", main=True),
     Measure("odometry_error", "Odometry error", "cm", 100, "m"),
     Measure("entropy", "Entropy", "nat", 1, "nat"),
     Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat"),
@@ -55,5 +62,21 @@ MEASURES: tuple[Measure, ...] = (
     Measure("decision_time", "Decision", "ms", 1000, "s", main=True),
 )
 """Every measure, in the order of the columns."""
+
+_EVERYWHERE = ("success", "collision", "return", "steps", "decision_time")
+FAMILIES: dict[str, frozenset[str]] = {
+    "exploration": frozenset(
+        {"completeness", "path_length", "time", "d_optimality", "trajectory_error", "map_iou", "odometry_error"}
+        | {"entropy", "entropy_gmapping", *_EVERYWHERE}
+    ),
+    "arena": frozenset({"path_ratio", "least_clearance", "smoothness", "barn_score", *_EVERYWHERE}),
+}
+"""The measures of each family of environments."""
+
+
+def names_for(family: str | None) -> frozenset[str]:
+    """The measures of a family; those of exploration for an environment of none."""
+    return FAMILIES.get(family or "", FAMILIES["exploration"])
+
 
 BY_NAME = {measure.name: measure for measure in MEASURES}

@@ -74,7 +74,7 @@ def single(cell: Cell) -> "Figure":
     )
     axes.set_xlabel("x (m)")
     axes.set_ylabel("y (m)")
-    _legend(figure, axes)
+    _legend(figure, axes, mapped=trace.grid is not None)
     return figure
 
 
@@ -101,7 +101,7 @@ def overview(cells: Sequence[Sequence[Cell]]) -> "Figure":
                 axes.set_xlabel("x (m)")
     # the layout does not see the annotated names of the policies: an empty second line leaves them room
     figure.suptitle(f"First episode of each policy (seed {cells[0][0].episodes[0].seed})\n", fontsize=12)
-    _legend(figure, *grid[0])
+    _legend(figure, *grid[0], mapped=any(trace.grid is not None for row in cells for trace in _traces(row)))
     return figure
 
 
@@ -156,11 +156,19 @@ def progress_band(
 def caption(episode: Episode) -> str:
     """Return how an episode ended, such as ``"explored 97% in 31.2 m, 105 s: success"``."""
     value = episode.measures
-    parts = [f"explored {100 * value['completeness']:.0f}%"] if np.isfinite(value["completeness"]) else []
+    explored = value.get("completeness", np.nan)
+    parts = [f"explored {100 * explored:.0f}%"] if np.isfinite(explored) else []
+    if np.isfinite(value.get("path_ratio", np.nan)):
+        parts.append(f"{value['path_ratio']:.2f} × A*'s path")
     lengths = [f"{value[name]:{form}}" for name, form in (("path_length", ".1f"), ("time", ".0f")) if name in value]
-    units = [f"{text} {unit}" for text, unit in zip(lengths, ("m", "s"), strict=True) if text != "nan"]
+    units = [f"{text} {unit}" for text, unit in zip(lengths, ("m", "s"), strict=False) if text != "nan"]
     text = " in ".join([*parts, ", ".join(units)] if units else parts)
     return f"{text}: {episode.ending}" if text else episode.ending
+
+
+def _traces(row: Sequence[Cell]) -> list[Trace]:
+    """What is drawn of an environment's policies."""
+    return [trace for cell in row if (trace := _trace(cell)) is not None]
 
 
 def _trace(cell: Cell) -> Trace | None:
@@ -179,6 +187,10 @@ def _draw_trace(axes: "Axes", trace: Trace, episode: Episode, box: tuple[float, 
             axes.plot(path[:, 0], path[:, 1], color=colour, linestyle=dashes, linewidth=1.4, label=label, zorder=4)
     path = trace.true if len(trace.true) else trace.estimated
     axes.plot(*path[0], "o", color="#009E73", markeredgecolor="white", markersize=9, label="start", zorder=5)
+    if len(trace.goal):
+        axes.plot(
+            *trace.goal[0], "*", color="#E69F00", markeredgecolor="black", markersize=14, label="goal", zorder=4.5
+        )
     crash = episode.ending == "collision"
     axes.plot(
         *path[-1],
@@ -209,8 +221,8 @@ def _draw_map(axes: "Axes", trace: Trace) -> None:
     from matplotlib.colors import BoundaryNorm, ListedColormap
     from matplotlib.patches import Circle
 
-    axes.set_facecolor("#C9CDD2")  # as unknown cells: what lies beyond the grid is unknown too
     if trace.grid is not None:
+        axes.set_facecolor("#C9CDD2")  # as unknown cells: what lies beyond the grid is unknown too
         (x, y), (rows, columns) = trace.origin, trace.grid.shape
         extent = (x, x + columns * trace.resolution, y, y + rows * trace.resolution)
         colours = ListedColormap(["#C9CDD2", "#FFFFFF", "#222222"])
@@ -234,7 +246,7 @@ def _box(traces: Sequence[Trace]) -> tuple[float, float, float, float]:
     return float(low[0]), float(high[0]), float(low[1]), float(high[1])
 
 
-def _legend(figure: "Figure", *panels: "Axes") -> None:
+def _legend(figure: "Figure", *panels: "Axes", mapped: bool = True) -> None:
     from matplotlib.lines import Line2D
     from matplotlib.patches import Patch
 
@@ -244,6 +256,7 @@ def _legend(figure: "Figure", *panels: "Axes") -> None:
         Patch(facecolor="#222222", label="mapped as wall"),
         Line2D([], [], color=WALL_COLOUR, linewidth=0.9, label="true walls"),
     ]
+    known = known if mapped else known[-1:]
     drawn = {handle.get_label(): handle for axes in panels for handle in axes.get_legend_handles_labels()[0]}
     lines = [handle for label, handle in drawn.items() if label != "end"]
     ends = [_marker("black", "s", "end"), _marker("#CC0000", "X", "collision")]

@@ -70,12 +70,14 @@ def contenders(rows: Sequence[Row], measure: Measure) -> list[Row]:
     """Return the rows of one environment among which a measure may be compared.
 
     Where `Measure.needs_coverage`, those are the rows whose completeness cannot be told from the best one: a policy
-    that crashes at once drives the shortest path, and that is no merit.
+    that crashes at once drives the shortest path, and that is no merit. `Measure.needs_success` is the same for
+    success.
     """
     measured = [row for row in rows if measure.name in row.metrics]
-    if not measure.needs_coverage or not all("completeness" in row.metrics for row in measured):
+    needed = "completeness" if measure.needs_coverage else "success" if measure.needs_success else None
+    if needed is None or not all(needed in row.metrics for row in measured):
         return measured
-    return level_with_best(measured, BY_NAME["completeness"])
+    return level_with_best(measured, BY_NAME[needed])
 
 
 def best(rows: Sequence[Row], measure: Measure) -> set[str]:

@@ -20,7 +20,9 @@ NOTE = (
     f"Mean over episodes and its 95% interval (BCa bootstrap, from {LEAST_SAMPLES} episodes on; Wilson's and "
     "Newcombe's for shares). Policies met the same seeds. Bold: the best, and what cannot be told from it by paired "
     "differences. Path, time, D-optimality and pose error are compared only among policies that explored as much as "
-    "the best; they count every episode, also those cut short by a collision."
+    "the best; they count every episode, also those cut short by a collision. In arenas path, clearance and "
+    "turning are those of the episodes that reached the goal, compared among policies that reach it as often as the "
+    "best."
 )
 LATEX_SIGNS = {
     "\\": r"\textbackslash{}",

@@ -1,5 +1,6 @@
 """Arenas: rooms with circles, a start and a goal, for reaching goals among obstacles."""
 
+import math
 import os
 from dataclasses import dataclass, replace
 
@@ -35,6 +36,7 @@ class Arena:
         goal: x, y [m].
         bounds: The room, x_min, y_min, x_max, y_max [m]; its walls are obstacles.
         robot_radius: Of the robot that belongs here [m]; 0 is the paper's point.
+        plan: The floor plan that it was made of, whose edges the circles cover; None for all others.
     """
 
     name: str
@@ -43,6 +45,13 @@ class Arena:
     goal: Point
     bounds: Bounds
     robot_radius: float = 0.0
+    plan: Floorplan | None = None
+
+    @property
+    def scale(self) -> float:
+        """The power of ten nearest to the longer side over the paper's 100 m; floor plans are drawn at a tenth."""
+        side = max(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1])
+        return 0.1 if self.plan is not None else 10.0 ** round(math.log10(side / 100.0))
 
     def floorplan(self, thickness: float = 1.0, least_radius: float = 0.0) -> Floorplan:
         """Draw the arena as a floor plan: the circles, and walls around the bounds.
@@ -163,7 +172,7 @@ def _from_floorplan(spec: str | Floorplan, goal: ArrayLike | None) -> Arena:
     if goal is None:
         raise MapError(f"floor plan {plan.name!r} has no goal of its own; give goal=(x, y) in metres")
     circles = np.vstack([plan.circles, edge_circles(plan)])
-    return Arena(plan.name, circles, plan.start[:2], _point("goal", goal), plan.bounds, robot_radius=0.1)
+    return Arena(plan.name, circles, plan.start[:2], _point("goal", goal), plan.bounds, 0.1, plan)
 
 
 def edge_circles(plan: Floorplan, radius: float = 0.05) -> NDArray[np.float64]:

@@ -146,7 +146,9 @@ def _see_plan(
             _see_edge(ax, ay, bx, by, max_range, directions, inverse)
         else:
             cx, cy, radius = scenery.circles[item - count]
-            _see_circle(cx - x, cy - y, radius, theta, directions, inverse)
+            reach = max_range + radius
+            if (cx - x) * (cx - x) + (cy - y) * (cy - y) < reach * reach:
+                _see_circle(cx - x, cy - y, radius, theta, directions, inverse)
 
 
 @leaf

@@ -46,22 +46,31 @@ class Physics:
 
     Attributes:
         poses: ``(worlds, robots, 3)`` true poses, x, y, theta [m, m, rad].
+        touched: ``(worlds,)`` whether some robot of a world touched anything in the last ``advance``.
     """
 
     def __init__(self, worlds: int, robots: int = 1, spec: RobotSpec | None = None) -> None:
         self.spec = spec or RobotSpec()
         self.poses = np.zeros((worlds, robots, 3))
+        self.touched = np.zeros(worlds, np.bool_)
         self._plans: list[Floorplan | None] = [None] * worlds
-        self._spaces: list[pymunk.Space] = [pymunk.Space() for _ in range(worlds)]
-        self._bodies: list[list[pymunk.Body]] = [[] for _ in range(worlds)]
+        self._specs = [self.spec] * worlds
+        self._spaces: list[pymunk.Space | None] = [None] * worlds
 
-    def place(self, world: int, plan: Floorplan, poses: Sequence[Pose]) -> None:
-        """Put one world's robots at rest at the given poses in a floor plan."""
-        if self._plans[world] is not plan or len(self._bodies[world]) != len(poses):
-            self._plans[world] = plan
-            self._spaces[world] = _build_space(plan)
-            self._bodies[world] = [self._add_robot(self._spaces[world]) for _ in poses]
+    def place(self, world: int, plan: Floorplan, poses: Sequence[Pose], spec: RobotSpec | None = None) -> None:
+        """Put one world's robots at rest at the given poses in a floor plan.
+
+        Args:
+            world: Which one.
+            plan: Its walls and pillars; pymunk hears of them when a robot first comes near something.
+            poses: One a robot.
+            spec: The body of this world's robots, if it is not the batch's.
+        """
+        if self._plans[world] is not plan:
+            self._plans[world], self._spaces[world] = plan, None
+        self._specs[world] = spec or self.spec
         self.poses[world] = poses
+        self.touched[world] = False
 
     def advance(self, commands: NDArray[np.float64], duration: float, near: NDArray[np.bool_]) -> None:
         """Drive every robot for ``duration`` seconds and update ``poses``.
@@ -75,6 +84,7 @@ class Physics:
             duration: [s].
             near: ``(worlds,)`` whether some robot of a world may touch something; see ``may_touch``.
         """
+        self.touched[:] = False
         for world in np.flatnonzero(near).tolist():
             self._push(world, commands[world].tolist(), duration)
         glide(near, commands, duration, self.poses)
@@ -87,10 +97,10 @@ class Physics:
         The bodies are new ones: an old one would still be pushed out of what it last touched, an episode ago perhaps,
         and a resumed training could not repeat that.
         """
-        steps = math.ceil(duration / self.spec.substep - 1e-9)
-        space = self._spaces[world]
+        spec, space = self._specs[world], self._space(world)
+        steps = math.ceil(duration / spec.substep - 1e-9)
         space.remove(*space.bodies, *(shape for body in space.bodies for shape in body.shapes))
-        bodies = self._bodies[world] = [self._add_robot(space) for _ in self._bodies[world]]
+        bodies = [_add_robot(space, spec) for _ in commands]
         for body, (speed, rate), (x, y, theta) in zip(bodies, commands, self.poses[world].tolist(), strict=True):
             body.position, body.angle = (x, y), theta
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
@@ -99,12 +109,19 @@ class Physics:
             space.step(duration / steps)
         self.poses[world] = [(*body.position, math.remainder(body.angle, 2.0 * math.pi)) for body in bodies]
 
-    def _add_robot(self, space: pymunk.Space) -> pymunk.Body:
-        body = pymunk.Body(self.spec.mass, pymunk.moment_for_circle(self.spec.mass, 0.0, self.spec.radius))
-        shape = pymunk.Circle(body, self.spec.radius)
-        shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
-        space.add(body, shape)
-        return body
+    def _space(self, world: int) -> pymunk.Space:
+        """One world's space, built when it is first needed."""
+        space = self._spaces[world]
+        if space is None:
+            plan = self._plans[world]
+            assert plan is not None, "place() comes first"
+            space = self._spaces[world] = _build_space(plan)
+            space.on_collision(begin=partial(self._touch, world))
+        return space
+
+    def _touch(self, world: int, arbiter: object, space: object, data: object) -> None:
+        """Callback of pymunk: two shapes have met."""
+        self.touched[world] = True
 
 
 @leaf
@@ -170,6 +187,14 @@ def _turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, 
     """Velocity callback of pymunk: what the wheels do, before contacts have their say."""
     body.velocity = chord(body.angle, speed, rate, dt)
     body.angular_velocity = rate
+
+
+def _add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
+    body = pymunk.Body(spec.mass, pymunk.moment_for_circle(spec.mass, 0.0, spec.radius))
+    shape = pymunk.Circle(body, spec.radius)
+    shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
+    space.add(body, shape)
+    return body
 
 
 def _build_space(plan: Floorplan) -> pymunk.Space:

@@ -45,6 +45,16 @@ def test_real_worlds_go_on_to_the_bit(tmp_path: Path) -> None:
     assert curve(resumed)[-1]["completeness"]
 
 
+def test_arenas_go_on_to_the_bit(tmp_path: Path) -> None:
+    keywords = "env.keywords={arena: random, arenas: 5, action: discrete, max_episode_steps: 12}"
+    overrides = ("env.id=lidarena/Arena-v0", keywords, "num_envs=3", "ppo.batch_size=16")
+    straight = train(small(tmp_path / "straight", *overrides, "total_steps=144"), progress=False)
+    stopped = train(small(tmp_path / "stopped", *overrides, "total_steps=48"), progress=False)
+    resumed = train(small(stopped, *overrides, "total_steps=144"), resume=stopped, progress=False)
+    assert equal(weights(resumed), weights(straight)) and curve(resumed) == curve(straight)
+    assert curve(resumed)[-1]["success_rate"] == "0" and not curve(resumed)[-1]["completeness"]
+
+
 def test_a_killed_training_goes_on_from_its_last_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     straight = train(small(tmp_path / "straight"), progress=False)
     with monkeypatch.context() as patch:

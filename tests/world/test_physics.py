@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar
-from lidarena.world.physics import Physics, chord, may_touch
+from lidarena.world.physics import Physics, RobotSpec, chord, may_touch
 
 HALL = Floorplan.from_shapes("hall", (0, 0, 20, 20), walls=[(15, 0, 15, 20)], start=(5, 5, 0))
 
@@ -93,3 +93,28 @@ def test_whoever_is_not_near_touches_nothing(x: float, speed: float, rate: float
         assert closest > 0.105
     elif closest > 0.105 + 0.12:
         raise AssertionError("asks the solver although the wall is out of reach")
+
+
+def test_touching_is_told_for_the_last_step_only() -> None:
+    physics = Physics(2)
+    for world in range(2):
+        physics.place(world, HALL, [(14.7 if world else 5.0, 5.0, 0.0)])
+    forward, near = np.tile([0.5, 0.0], (2, 1, 1)), np.ones(2, np.bool_)
+    physics.advance(forward, 0.4, near)
+    assert physics.touched.tolist() == [False, True]
+    physics.advance(-forward, 0.2, near)
+    physics.advance(-forward, 0.2, near)
+    assert physics.touched.tolist() == [False, False]
+    physics.advance(forward, 2.0, near)
+    assert physics.touched[1]
+    physics.place(1, HALL, [(5.0, 5.0, 0.0)])
+    assert not physics.touched[1]
+
+
+def test_a_world_may_have_a_body_of_its_own() -> None:
+    physics = Physics(2)
+    for world, spec in enumerate((None, RobotSpec(radius=1.0))):
+        physics.place(world, HALL, [(12.0, 5.0, 0.0)], spec)
+    for _ in range(40):
+        physics.advance(np.tile([0.5, 0.0], (2, 1, 1)), 0.2, np.ones(2, np.bool_))
+    assert physics.poses[:, 0, 0] == pytest.approx([14.95 - 0.105, 14.95 - 1.0], abs=0.02)

@@ -1,0 +1,72 @@
+"""What a lidar has seen of an arena: hits as points, of this scan or of all."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+_JUMP = 0.25
+"""Neighbouring ranges that differ by more than this share of the nearer one, and by what lies between two beams, are
+of different obstacles."""
+
+
+def hits_of(info: dict[str, Any], longest: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """Where the beams end.
+
+    Args:
+        info: An arena environment's; ``scan`` and ``pose`` are used.
+        longest: Ranges from here on are of beams that met nothing [m].
+
+    Returns:
+        Points (n, 2) [m], and the numbers (n,) of their beams.
+    """
+    scan, (x, y, theta) = np.asarray(info["scan"], np.float64), info["pose"]
+    beams = np.flatnonzero(scan < longest)
+    angles = theta + beams * (2.0 * np.pi / len(scan))
+    away = scan[beams, None] * np.column_stack([np.cos(angles), np.sin(angles)])
+    return np.array([x, y]) + away, beams
+
+
+def nearest_of_each(info: dict[str, Any], longest: float) -> NDArray[np.float64]:
+    """The nearest hit (n, 2) of each obstacle that the scan shows [m]: the point that repels the robot.
+
+    Args:
+        info: See :func:`hits_of`.
+        longest: See there.
+    """
+    points, beams = hits_of(info, longest)
+    if not len(points):
+        return points
+    scan = np.asarray(info["scan"], np.float64)
+    ranges = scan[beams]
+    before = scan[beams - 1]
+    spread = _JUMP + 4.0 * np.pi / len(scan)  # a surface seen at a slant recedes from beam to beam
+    new = (np.abs(ranges - before) > spread * np.minimum(ranges, before)) | (before >= longest)
+    group = np.cumsum(new) % max(int(new.sum()), 1)  # the run before the first edge belongs to the last one
+    order = np.lexsort((ranges, group))
+    firsts = np.concatenate([[True], np.diff(group[order]) > 0])
+    nearest: NDArray[np.float64] = points[order[firsts]]
+    return nearest
+
+
+class SeenObstacles:
+    """Remembers one hit in every cell of a fine lattice.
+
+    Args:
+        cell: Side of a cell [m].
+    """
+
+    def __init__(self, cell: float) -> None:
+        self._cell = cell
+        self._points: dict[tuple[int, int], NDArray[np.float64]] = {}
+
+    def add(self, points: NDArray[np.float64]) -> bool:
+        """Remember points (n, 2) [m]; whether one of them was in a new cell."""
+        before = len(self._points)
+        for key, point in zip(np.floor(points / self._cell).astype(int).tolist(), points, strict=True):
+            self._points.setdefault((key[0], key[1]), point)
+        return len(self._points) > before
+
+    def points(self) -> NDArray[np.float64]:
+        """All of them (n, 2) [m]."""
+        return np.array(list(self._points.values())).reshape(-1, 2)

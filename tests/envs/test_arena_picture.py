@@ -1,0 +1,58 @@
+import numpy as np
+
+from lidarena.envs import ArenaEnv
+from lidarena.world.drawing import BLUE, GREEN, MAGENTA, ORANGE, RED
+
+COLOURS = {"driven": GREEN, "plan": ORANGE, "after regression": BLUE, "hits": RED}
+
+
+def picture_of(steps: int = 5, **keywords: object) -> np.ndarray:
+    env = ArenaEnv(render_mode="rgb_array", **keywords)
+    env.reset(seed=0)
+    for _ in range(steps):
+        env.step(np.zeros(1, np.float32))
+    picture = env.render()
+    assert picture is not None
+    return picture
+
+
+def count(picture: np.ndarray, colour: tuple[int, int, int]) -> int:
+    return int((picture == colour).all(axis=2).sum())
+
+
+def test_everything_that_the_legend_names_is_there() -> None:
+    panel = picture_of(arena="yang:u")[44:-64]
+    for name, colour in COLOURS.items():
+        assert count(panel, colour) > 15, name
+    assert count(panel, MAGENTA) > 10  # the fills leave minima inside of the trap
+
+
+def test_the_green_line_grows_with_the_way_driven() -> None:
+    short, long = (count(picture_of(steps, arena="yang")[44:-64], GREEN) for steps in (2, 30))
+    assert long > 2 * short
+
+
+def test_rooms_keep_their_shape() -> None:
+    tall = picture_of(arena="env2", goal=(1.0, 6.5))
+    assert tall.shape == (560 + 44 + 64, 640, 3)
+
+
+def test_an_episode_that_begins_is_drawn_anew() -> None:
+    env = ArenaEnv(arena="u_trap", pick="by_seed", render_mode="rgb_array")
+    env.reset(seed=0)
+    first = env.render()
+    env.reset(seed=1)
+    second = env.render()
+    env.reset(seed=0)
+    assert first is not None and not np.array_equal(first, second)
+    assert np.array_equal(first, env.render())
+
+
+def test_drawing_changes_no_bit_of_the_world() -> None:
+    plain, drawn = ArenaEnv(arena="random"), ArenaEnv(arena="random", render_mode="rgb_array")
+    for env in (plain, drawn):
+        env.reset(seed=2)
+    for _ in range(4):
+        drawn.render()
+        one, two = (env.step(np.full(1, 0.05, np.float32)) for env in (plain, drawn))
+        assert one[0].tobytes() == two[0].tobytes() and one[1] == two[1]

@@ -1,0 +1,45 @@
+import math
+from typing import Any
+
+import pytest
+
+from lidarena.envs.keyword_checks import check_choice, check_names, check_range, check_switch
+from lidarena.world.refusals import ConfigError
+
+
+def test_what_is_allowed_passes() -> None:
+    check_names("a world", {"speed": 1, "beams": 3}, ["beams", "speed"])
+    check_choice("mode", None, (None, "fast"))
+    check_choice("mode", "fast", (None, "fast"))
+    check_range("speed", 1, 0.0, 1.0)
+    check_range("beams", 4, 4, 9, whole=True)
+    check_switch("known", True)
+
+
+def test_an_unknown_keyword_is_answered_with_the_nearest() -> None:
+    with pytest.raises(
+        ConfigError, match=r"unknown keyword 'sped' of a world; did you mean 'speed'\? Allowed: beams, speed"
+    ):
+        check_names("a world", {"sped": 1}, ["beams", "speed"])
+
+
+def test_an_unknown_choice_is_answered_with_the_nearest() -> None:
+    with pytest.raises(ConfigError, match="mode = 'fats' is not known; did you mean 'fast'"):
+        check_choice("mode", "fats", (None, "fast", "slow"))
+
+
+@pytest.mark.parametrize("value", [-0.1, 1.1, math.nan, math.inf, "1", None, True, [1]])
+def test_a_number_out_of_range_is_refused_with_the_range(value: Any) -> None:
+    with pytest.raises(ConfigError, match=r"speed = .* is out of range; a number from 0 to 1 is allowed"):
+        check_range("speed", value, 0.0, 1.0)
+
+
+def test_a_fraction_is_no_whole_number() -> None:
+    with pytest.raises(ConfigError, match=r"beams = 4\.5 must be a whole number"):
+        check_range("beams", 4.5, 1, 9, whole=True)
+
+
+@pytest.mark.parametrize("value", [0, 1, "yes", None])
+def test_a_switch_is_true_or_false(value: Any) -> None:
+    with pytest.raises(ConfigError, match=r"known = .* must be true or false"):
+        check_switch("known", value)
