@@ -188,6 +188,7 @@ class _Run:
         self.model.logger.name_to_value.clear()
         episodes = list(self.model.ep_info_buffer or ())
         names = {"r": "ep_rew_mean", "l": "ep_len_mean", "completeness": "completeness", "collision": "collision_rate"}
+        names["arrived"] = "arrival_rate"
         for key, name in names.items():
             known = [episode[key] for episode in episodes if key in episode]
             if known:
@@ -287,6 +288,8 @@ def _summary(values: dict[str, float]) -> str:
         shown.append(f"return {values['rollout/ep_rew_mean']:.1f}")
     if "rollout/completeness" in values:
         shown.append(f"completeness {values['rollout/completeness']:.0%}")
+    if "rollout/arrival_rate" in values:
+        shown.append(f"arrivals {values['rollout/arrival_rate']:.0%}")
     if "rollout/collision_rate" in values:
         shown.append(f"collisions {values['rollout/collision_rate']:.0%}")
     return "  ".join(shown)

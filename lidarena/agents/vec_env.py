@@ -16,7 +16,7 @@ from lidarena.world.refusals import ConfigError
 
 Arrays = dict[str, NDArray[Any]]
 
-_LOGGED = ("completeness", "collision")
+_LOGGED = ("completeness", "collision", "arrived")
 
 
 @runtime_checkable

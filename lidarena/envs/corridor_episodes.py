@@ -19,6 +19,8 @@ Info = dict[str, Any]
 TERMS = ("progress", "arrival", "collision", "time", "closeness", "turning")
 _EXTRA = 8
 """Numbers of an observation besides the beams."""
+NEIGHBOUR = 5
+"""Numbers of an observation for each neighbour."""
 
 
 class CorridorEpisodes:
@@ -47,7 +49,8 @@ class CorridorEpisodes:
 
     def __init__(self, worlds: int, options: CorridorOptions) -> None:
         self.options, self.core = options, CorridorCore(worlds, options)
-        self.observation_space = gym.spaces.Box(-1.0, 1.0, (options.beams + _EXTRA,), np.float32)
+        self._numbers = options.beams + _EXTRA + NEIGHBOUR * options.neighbours
+        self.observation_space = gym.spaces.Box(-1.0, 1.0, (self._numbers,), np.float32)
         self.action_space: gym.Space[Any] = action_space(options.action)
         self.trails = TrailRecorder(worlds) if options.render_mode is not None else None
         self.sketches = [TeamSketch() for _ in range(worlds)]
@@ -155,10 +158,11 @@ class CorridorEpisodes:
 
     def observe(self, hide_finished: bool = True) -> NDArray[np.float32]:
         """Fresh observations (worlds, robots, …); of robots that are finished zeros, if wanted."""
-        out = np.empty((*self.finished.shape, self.options.beams + _EXTRA), np.float32)
+        out = np.empty((*self.finished.shape, self._numbers), np.float32)
         hidden = self.finished if hide_finished else np.zeros_like(self.finished)
         top = np.array([TOP_SPEED, TOP_TURN_RATE])
-        write_observations(self.core.senses, self.core.goals, hidden, self.core.beam.max_range, top, out)
+        reach, neighbours = self.core.beam.max_range, self.options.neighbours
+        write_observations(self.core.senses, self.core.goals, hidden, reach, top, neighbours, out)
         return out
 
     def robot_infos(self) -> Info:

@@ -347,9 +347,10 @@ def write_observations(
     finished: NDArray[np.bool_],
     max_range: float,
     top: NDArray[np.float64],
+    neighbours: int,
     out: NDArray[np.float32],
 ) -> None:
-    """Fill ``out`` (W, R, beams + 8); see ``corridor_v0``. Robots that were ``finished`` (W, R) see zeros.
+    """Fill ``out`` (W, R, beams + 8 + 5 neighbours); see ``corridor_v0``. Robots that ``finished`` (W, R) see zeros.
 
     ``top`` (2,): the speed and turn rate that are observed as 1.
     """
@@ -368,3 +369,36 @@ def write_observations(
             for k in range(2):
                 row[beams + 3 + k] = min(max(senses.velocity[w, r, k] / top[k], -1.0), 1.0)
             _write_direction(row, beams + 5, pose, senses.carrot[w, r], senses.remaining[w, r])
+            _write_neighbours(senses.measured[w], senses.velocity[w], r, neighbours, top[0], row[beams + 8 :])
+
+
+@leaf
+def _write_neighbours(
+    poses: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    robot: int,
+    neighbours: int,
+    top: float,
+    out: NDArray[np.float32],
+) -> None:
+    """Five numbers for each of a robot's nearest neighbours, the nearest first: bearing cos, sin, d / (d + 2 m), and how
+    fast it comes nearer along and across the robot's heading, over twice the ``top`` speed; zeros where there is none.
+    """
+    out[:] = 0.0
+    pose, last = poses[robot], -1.0
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    for n in range(min(neighbours, poses.shape[0] - 1)):
+        nearest, least = -1, 1e18
+        for other in range(poses.shape[0]):
+            dx, dy = poses[other, 0] - pose[0], poses[other, 1] - pose[1]
+            square = dx * dx + dy * dy
+            if other != robot and last < square < least:
+                nearest, least = other, square
+        if nearest < 0:
+            return
+        last = least
+        _write_direction(out, 5 * n, pose, poses[nearest], math.sqrt(least))
+        vx = velocity[nearest, 0] * math.cos(poses[nearest, 2]) - velocity[robot, 0] * cos
+        vy = velocity[nearest, 0] * math.sin(poses[nearest, 2]) - velocity[robot, 0] * sin
+        out[5 * n + 3] = min(max((vx * cos + vy * sin) / (2.0 * top), -1.0), 1.0)
+        out[5 * n + 4] = min(max((vy * cos - vx * sin) / (2.0 * top), -1.0), 1.0)

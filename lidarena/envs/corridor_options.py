@@ -28,7 +28,7 @@ _RANGES = {
     "closeness_weight": (0.0, 1e6),
     "turning_weight": (0.0, 1e6),
 }
-_WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440)}
+_WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440), "neighbours": (0, MOST_ROBOTS)}
 _RENDER_MODES = (None, "rgb_array", "human")
 
 
@@ -49,6 +49,7 @@ class CorridorOptions:
         beams: Of every robot's lidar.
         lidar_range: [m].
         lidar_noise: Standard deviation of a range [m].
+        neighbours: How many of the nearest robots tell each robot where they are and how they move.
         motion_noise: Factor on the noise of the wheels (see ``corridor_kernels.disturb``); 0 = they obey.
         localization_noise: Standard deviation of ``info["pose"]``: metres, and for the heading radians.
         stall_rate: How often a robot is held up for some 3 s, by nobody's fault [1/s].
@@ -76,6 +77,7 @@ class CorridorOptions:
     beams: int = 36
     lidar_range: float = 3.5
     lidar_noise: float = 0.01
+    neighbours: int = 0
     motion_noise: float = 1.0
     localization_noise: float = 0.02
     stall_rate: float = 0.0

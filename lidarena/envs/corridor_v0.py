@@ -60,7 +60,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
 
     ## Observation space
 
-    ``Box(-1, 1, (beams + 8,), float32)``; n is the number of beams (36):
+    ``Box(-1, 1, (beams + 8 + 5 · neighbours,), float32)``; n is the number of beams (36):
 
     | Num | Observation |
     |-----|-------------|
@@ -70,6 +70,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
     | n+3, n+4 | own speed / 0.5 m/s, own turn rate / 2 rad/s |
     | n+5, n+6 | the bearing of a point some 0.8 m ahead on the robot's shortest way through the map: cos, sin |
     | n+7     | l / (l + 2 m) of the length l of that way |
+    | n+8 … | with ``neighbours``, for each of the nearest robots: bearing cos, sin; d / (d + 2 m); its velocity relative to the robot's, along and across the robot's heading, over 1 m/s |
 
     The way is that of one robot alone: it knows of no other robot.
 
