@@ -12,11 +12,14 @@ from lidarena.world.refusals import ConfigError
 
 MODEL_FILE = Path(__file__).parent / "data" / "deviation.json"
 """The model that comes with the package; ``python -m lidarena.baselines.learn_deviation`` learns it anew."""
-BIN = 0.1
+BIN = 0.02
 """Width of the distance ranges that are counted [m]."""
 WEIGHT = 40.0
 """What touching another robot is worth, in steps of a plan."""
+_ENDS = (0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28)
+"""Where the linear pieces end [m]; the last one ends with the distances."""
 _DIRECTIONS, _RADII = 32, 40
+_LARGEST = 64.0  # the planner's greatest cost of a step
 
 
 @dataclass(frozen=True)
@@ -34,13 +37,12 @@ class DeviationModel:
     runs: int
 
     @classmethod
-    def fitted(cls, distances: ArrayLike, runs: int, pieces: int = 4) -> "DeviationModel":
+    def fitted(cls, distances: ArrayLike, runs: int) -> "DeviationModel":
         """Fit linear pieces to recorded distances.
 
         Args:
             distances: (n,) [m].
             runs: Executions that they come from.
-            pieces: Linear pieces; their ends lie at quantiles of the distances, where there is something to learn.
 
         Raises:
             ConfigError: There are no distances.
@@ -49,10 +51,9 @@ class DeviationModel:
         if values.size < 2 or not np.isfinite(values).all():
             raise ConfigError(f"{values.size} recorded distances are too few for a deviation model")
         counts = np.bincount((values / BIN).astype(np.int64))
-        at = np.concatenate([[0.0], np.quantile(values, np.linspace(0, 1, pieces + 1)[1:-1]), [values.max() + BIN]])
-        at = np.unique(np.round(at, 3))
-        height = _least_squares(at, counts / (counts.sum() * BIN))
-        return cls(counts, np.stack([at, height], axis=1), runs)
+        end = len(counts) * BIN
+        at = np.array([0.0, *(knot for knot in _ENDS if knot < end), end])
+        return cls(counts, np.stack([at, _least_squares(at, counts / (counts.sum() * BIN))], axis=1), runs)
 
     def density(self, distance: ArrayLike) -> NDArray[np.float64]:
         """Probability density [1/m] of distances [m]."""
@@ -85,7 +86,7 @@ class DeviationModel:
             (m, 2) distance [cells] and cost [steps].
         """
         gaps = np.arange(0.0, self.knots[-1, 0] + reach + cell, 0.5 * cell)
-        table = np.array([(gap / cell, weight * self.risk(float(gap), reach)) for gap in gaps])
+        table = np.array([(gap / cell, min(weight * self.risk(float(gap), reach), _LARGEST)) for gap in gaps])
         table[-1, 1] = 0.0
         return table
 

@@ -7,6 +7,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.envs.corridor_picture import TeamSketch
 from lidarena.envs.corridor_v0 import agent_name
 from lidarena.envs.team_actions import action_for
 from lidarena.planning.team.floor_grid import FloorGrid
@@ -91,7 +92,11 @@ class Fleet:
         x, y = np.asarray(own["origin"]).tolist()
         return FloorGrid(np.asarray(own["map"]) > 50, (x, y), float(own["resolution"]))
 
-    def show(self, sketch: Any) -> None:
-        """Let a sketch be seen in the environment's picture, if it draws any."""
-        if self._env.render_mode is not None:
-            self._env.show(sketch)
+    @property
+    def drawn(self) -> bool:
+        """Whether the environment draws pictures, so that a sketch is worth making."""
+        return self._env.render_mode is not None
+
+    def show(self, sketch: TeamSketch) -> None:
+        """Let a sketch be seen in the environment's picture."""
+        self._env.show(sketch)

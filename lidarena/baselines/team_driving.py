@@ -60,8 +60,10 @@ class ClockDriving:
         return self.curves[robot][min(int(state.time / self.step), len(self.curves[robot]) - 1) :]
 
 
-_LOOK = 0.45  # how far ahead on its path a robot aims (m)
-_PASSED = 0.12  # nearer than this to a point of its path it has completed the step there (m)
+_LOOK = 0.35  # how far ahead on its path a robot aims (m)
+_PASSED = 0.08  # nearer than this to a point of its path it has completed the step there (m)
+_GAP = 0.06  # robots that would come nearer than this to each other stop (m)
+_FORESIGHT = 0.3  # within so many seconds
 
 
 class OrderedDriving:
@@ -70,14 +72,15 @@ class OrderedDriving:
     Args:
         curves: (T, 2) points of each robot, one a step of the plan [m].
         precedence: The plan's order.
+        radius: Of the robots [m].
 
     Attributes:
         completed: (k,) steps that each robot has completed.
         waits: Pairs (i, j) at the last call of ``commands``: robot i waited for robot j.
     """
 
-    def __init__(self, curves: list[Floats], precedence: Precedence) -> None:
-        self.curves, self._precedence = curves, precedence
+    def __init__(self, curves: list[Floats], precedence: Precedence, radius: float) -> None:
+        self.curves, self._precedence, self._apart = curves, precedence, 2.0 * radius + _GAP
         self.completed = np.zeros(len(curves), np.int64)
         self.waits: tuple[tuple[int, int], ...] = ()
 
@@ -105,10 +108,21 @@ class OrderedDriving:
         commands = np.zeros((len(self.curves), 2))
         for robot in np.flatnonzero(state.active).tolist():
             target, hinderers = self._target(robot)
-            commands[robot] = steer_to(state.poses[robot], target)
-            waits += [(robot, int(other)) for other in hinderers]
+            speed, rate = steer_to(state.poses[robot], target)
+            ahead = self._in_the_way(robot, speed, state)
+            commands[robot] = (0.0 if ahead else speed), rate
+            waits += [(robot, int(other)) for other in {*hinderers, *ahead}]
         self.waits = tuple(waits)
         return commands
+
+    def _in_the_way(self, robot: int, speed: float, state: FleetState) -> list[int]:
+        """Robots that one is about to touch, whatever the plan says."""
+        x, y, theta = state.poses[robot]
+        soon = np.array([x + speed * _FORESIGHT * math.cos(theta), y + speed * _FORESIGHT * math.sin(theta)])
+        now, then = (np.hypot(*(state.poses[:, :2] - point).T) for point in (state.poses[robot, :2], soon))
+        near = (then < self._apart) & (then < now)
+        near[robot] = False
+        return [int(other) for other in np.flatnonzero(near)]
 
     def _target(self, robot: int) -> tuple[Floats, NDArray[np.int64]]:
         """Where a robot aims, and for whom it waits there, if it may go no farther."""

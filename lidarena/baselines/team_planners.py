@@ -95,8 +95,9 @@ class PlannedFleet:
 
     def drive(self, state: FleetState, info: dict[str, Any]) -> NDArray[np.float64]:
         """Commands (k, 2) for now."""
-        curves = {robot: self.driving.remaining(robot, state) for robot in np.flatnonzero(state.active).tolist()}
-        self.fleet.show(TeamSketch(curves, self._meetings(state), (), self.message))
+        if self.fleet.drawn:
+            curves = {robot: self.driving.remaining(robot, state) for robot in np.flatnonzero(state.active).tolist()}
+            self.fleet.show(TeamSketch(curves, self._meetings(state), (), self.message))
         return self.driving.commands(state)
 
     def _meetings(self, state: FleetState) -> NDArray[np.float64]:

@@ -82,7 +82,7 @@ class SearchingFleet(PlannedFleet):
 
     def _take_up(self, plan: TeamPlan, radius: float) -> None:
         curves = [self.grid.points(path) for path in plan.paths]
-        self.ordered = OrderedDriving(curves, Precedence(plan, 2.0 * self.grid.in_cells(radius)))
+        self.ordered = OrderedDriving(curves, Precedence(plan, 2.0 * self.grid.in_cells(radius)), self.fleet.radius)
 
     def drive(self, state: FleetState, info: dict[str, Any]) -> NDArray[np.float64]:
         """Commands (k, 2) for now, after a look at who is late."""
@@ -95,8 +95,9 @@ class SearchingFleet(PlannedFleet):
         if self.may_replan and self._should_replan(state):
             self._replan(state)
             commands = self.ordered.commands(state)
-        curves = {robot: self.ordered.remaining(robot) for robot in np.flatnonzero(state.active).tolist()}
-        self.fleet.show(TeamSketch(curves, np.empty((0, 2)), self.ordered.waits, self._note()))
+        if self.fleet.drawn:
+            curves = {robot: self.ordered.remaining(robot) for robot in np.flatnonzero(state.active).tolist()}
+            self.fleet.show(TeamSketch(curves, np.empty((0, 2)), self.ordered.waits, self._note()))
         return commands
 
     def _note(self) -> str:

@@ -119,7 +119,8 @@ def run_episode(
         film(env)
     ending = _ending(terminated, truncated, info)
     trace = _trace(env, policy, info, log) if keep_trace else None
-    return Episode(seed, log.measures(info, ending) | _map_quality(env, info), ending, log.progress(), trace)
+    own = info["measures"] if "measures" in info else _map_quality(env, info)
+    return Episode(seed, log.measures(info, ending) | own, ending, log.progress(), trace)
 
 
 def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:

@@ -38,7 +38,7 @@ class Measure:
         return f"{self.title} ({self.unit}){arrow}" if self.unit else f"{self.title}{arrow}"
 
 
-MEASURES: tuple[Measure, ...] = (
+EXPLORATION: tuple[Measure, ...] = (
     Measure("completeness", "Explored", "%", 100, better="high", main=True),
     Measure("success", "Success", "%", 100, better="high", share=True, main=True),
     Measure("collision", "Collision", "%", 100, better="low", share=True, main=True),
@@ -54,6 +54,18 @@ MEASURES: tuple[Measure, ...] = (
     Measure("steps", "Steps"),
     Measure("decision_time", "Decision", "ms", 1000, "s", main=True),
 )
+"""Of robots that explore; what every environment has in common is here, too."""
+
+TEAM: tuple[Measure, ...] = (
+    Measure("arrival", "Robots arrived", "%", 100, better="high", main=True),
+    Measure("all_arrived", "All arrived", "%", 100, better="high", share=True, main=True),
+    Measure("collided", "Robots collided", "%", 100, better="low", main=True),
+    Measure("makespan", "Last arrival", "s", 1, "s", "low", main=True),
+    Measure("mean_time", "Mean arrival", "s", 1, "s", "low", main=True),
+)
+"""Of teams of robots; the environments report these by name in ``info["measures"]``."""
+
+MEASURES = (*EXPLORATION, *TEAM)
 """Every measure, in the order of the columns."""
 
 BY_NAME = {measure.name: measure for measure in MEASURES}
