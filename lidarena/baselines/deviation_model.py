@@ -16,7 +16,7 @@ BIN = 0.02
 """Width of the distance ranges that are counted [m]."""
 WEIGHT = 40.0
 """What touching another robot is worth, in steps of a plan."""
-_ENDS = (0.02, 0.04, 0.08, 0.16, 0.32, 0.64, 1.28)
+_ENDS = (0.03, 0.07, 0.12, 0.2, 0.4, 0.8)
 """Where the linear pieces end [m]; the last one ends with the distances."""
 _DIRECTIONS, _RADII = 32, 40
 _LARGEST = 64.0  # the planner's greatest cost of a step

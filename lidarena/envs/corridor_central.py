@@ -82,9 +82,9 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
     ## Info
 
     By robot: ``poses`` (robots, 3) as localisation gives them, ``goals`` (robots, 2), ``remaining`` [m], ``arrived``,
-    ``finished``, ``collided``, ``path_lengths`` [m]. Of the team: ``collision``, ``time`` [s], ``reward_terms``, ``map``
-    (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), ``radius`` of the robots [m];
-    ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``, ``makespan``
+    ``finished``, ``collided``, ``path_lengths`` [m]. Of the team: ``collision``, ``time`` [s], ``reward_terms``,
+    ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), ``radius`` of the robots
+    [m]; ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``, ``makespan``
     and ``mean_time`` [s]. With ``expose_truth=True`` also ``truth``: ``poses`` and ``path_length``.
 
     ## Arguments
@@ -249,6 +249,4 @@ def seeded_generators(
     seeds = [None if seed is None else seed + i for i in range(worlds)] if not isinstance(seed, list) else seed
     if len(seeds) != worlds:
         raise ConfigError(f"{len(seeds)} seeds were given for {worlds} worlds; one for each is needed")
-    return [
-        before[world] if before and one is None else seeding.np_random(one)[0] for world, one in enumerate(seeds)
-    ]
+    return [before[world] if before and one is None else seeding.np_random(one)[0] for world, one in enumerate(seeds)]

@@ -381,8 +381,9 @@ def _write_neighbours(
     top: float,
     out: NDArray[np.float32],
 ) -> None:
-    """Five numbers for each of a robot's nearest neighbours, the nearest first: bearing cos, sin, d / (d + 2 m), and how
-    fast it comes nearer along and across the robot's heading, over twice the ``top`` speed; zeros where there is none.
+    """Five numbers for each of a robot's nearest neighbours, the nearest first; zeros where there is none.
+
+    Bearing cos, sin; d / (d + 2 m); relative velocity along and across the robot's heading, over twice ``top``.
     """
     out[:] = 0.0
     pose, last = poses[robot], -1.0

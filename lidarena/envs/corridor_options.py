@@ -39,8 +39,8 @@ class CorridorOptions:
     Attributes:
         map: Floor plan: ``office``, ``unstructured``, ``passing``, ``blocked``, or any other (see ``load_floorplan``).
         robots: Size of the team.
-        places: Where robots start and go: ``"predefined"`` (the map's own places; where there is a set of them, both are
-            drawn from it), ``"random"`` (any places, such that the problem is solvable), the path of a MovingAI
+        places: Where robots start and go: ``"predefined"`` (the map's own places; where there is a set of them, both
+            are drawn from it), ``"random"`` (any places, such that the problem is solvable), the path of a MovingAI
             ``.scen`` file that belongs to a ``.map``, or None: predefined if the map has places, else random.
         starts: (robots, 2) x, y [m] in place of ``places``; with ``goals``.
         goals: (robots, 2) x, y [m].

@@ -68,9 +68,9 @@ class Places:
             if len(self._candidates) < robots:
                 break
             starts, goals = (rng.choice(self._candidates, robots, replace=False) for _ in range(2))
-            if self._fits(starts) and self._fits(goals) and (starts != goals).all():
-                if is_well_formed(self._roads, starts, goals):
-                    return self._points(starts), self._points(goals)
+            apart = self._fits(starts) and self._fits(goals) and (starts != goals).all()
+            if apart and is_well_formed(self._roads, starts, goals):
+                return self._points(starts), self._points(goals)
         raise TeamError(
             f"no solvable starts and goals for {robots} robots were found in map {self._plan.name!r}; "
             "fewer robots, a smaller radius or a larger map are needed"

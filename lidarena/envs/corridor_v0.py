@@ -1,8 +1,8 @@
 """The multi-robot environment for PettingZoo: ``parallel_env`` and ``env``.
 
-    from lidarena.envs import corridor_v0
+from lidarena.envs import corridor_v0
 
-    fleet = corridor_v0.parallel_env(map="office", robots=4)
+fleet = corridor_v0.parallel_env(map="office", robots=4)
 """
 
 from typing import Any
@@ -70,8 +70,10 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
     | n+3, n+4 | own speed / 0.5 m/s, own turn rate / 2 rad/s |
     | n+5, n+6 | the bearing of a point some 0.8 m ahead on the robot's shortest way through the map: cos, sin |
     | n+7     | l / (l + 2 m) of the length l of that way |
-    | n+8 … | with ``neighbours``, for each of the nearest robots: bearing cos, sin; d / (d + 2 m); its velocity relative to the robot's, along and across the robot's heading, over 1 m/s |
+    | n+8 … n+12 | with ``neighbours``, of the nearest robot: bearing cos, sin; d / (d + 2 m); relative velocity |
+    | …       | the same of the next ones |
 
+    The relative velocity has two parts, along and across the robot's heading, over 1 m/s.
     The way is that of one robot alone: it knows of no other robot.
 
     ## Rewards
@@ -165,9 +167,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
 
     def step(
         self, actions: dict[str, Any]
-    ) -> tuple[
-        dict[str, NDArray[np.float32]], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]
-    ]:
+    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]:
         """Act for one decision period.
 
         Args:

@@ -1,6 +1,6 @@
 """The experiments of Bennewitz & Burgard (section 3), Fig. 10, 12, 15 and 16, and the MovingAI benchmarks.
 
-    python evaluate.py --config configs/compare/team_planning.yaml
+python evaluate.py --config configs/compare/team_planning.yaml
 """
 
 import multiprocessing
@@ -177,7 +177,7 @@ def _movingai_tasks(config: MovingAI) -> Iterable[Task]:
     tasks = []
     for name in config.maps:
         if not (folder / "map" / f"{name}.map").is_file():
-            raise ConfigError(f"there is no {str(folder / 'map' / name)}.map; movingai.folder holds map and scen-random")
+            raise ConfigError(f"there is no {folder / 'map' / name}.map; movingai.folder holds map and scen-random")
         for robots in config.robots:
             tasks += [partial(_movingai, folder, name, robots, i, config.time_limit) for i in range(1, 11)]
     return tasks

@@ -140,7 +140,9 @@ def markdown(rows: Sequence[Row]) -> str:
             texts = " | ".join(_text(row) for row in cells)
             lines.append(f"| {env} | {robots} | {len(cells[0].values)} | {texts} |")
         parts.append("\n".join(lines) + "\n")
-    return "\n".join([*parts, "Mean and 95% interval (BCa bootstrap; Wilson's for shares). Every plan was validated.\n"])
+    return "\n".join(
+        [*parts, "Mean and 95% interval (BCa bootstrap; Wilson's for shares). Every plan was validated.\n"]
+    )
 
 
 def csv(rows: Sequence[Row]) -> str:

@@ -3,8 +3,9 @@
 Robots are late; a plan that is free of conflicts in time need not stay so. What makes it safe is the order in which
 robots pass each place, and that order can be kept at any speed: before a robot begins a step of its path, everybody who
 passes near that step earlier in the plan must have completed the step with which he does (action dependencies: Ma,
-Kumar & Koenig 2017; Hönig et al. 2019). Every dependency points to an earlier step of the plan, so whoever is
-farthest behind may always go on: the order itself brings no deadlock.
+Kumar & Koenig 2017; Hönig et al. 2019). Dependencies point to earlier steps of the plan, or from a robot to the one
+whose room it takes in the same step, so whoever is farthest behind may go on, unless robots follow each other in a
+ring: the order itself brings no other deadlock.
 """
 
 import math
@@ -32,8 +33,12 @@ def _segments_apart(
 ) -> float:
     """Distance between the segments a b and c d."""
     least = min(
-        min(_point_to_segment(a[0], a[1], c[0], c[1], d[0], d[1]), _point_to_segment(b[0], b[1], c[0], c[1], d[0], d[1])),
-        min(_point_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]), _point_to_segment(d[0], d[1], a[0], a[1], b[0], b[1])),
+        min(
+            _point_to_segment(a[0], a[1], c[0], c[1], d[0], d[1]), _point_to_segment(b[0], b[1], c[0], c[1], d[0], d[1])
+        ),
+        min(
+            _point_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]), _point_to_segment(d[0], d[1], a[0], a[1], b[0], b[1])
+        ),
     )
     one = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
     two = (b[0] - a[0]) * (d[1] - a[1]) - (b[1] - a[1]) * (d[0] - a[0])
@@ -42,6 +47,29 @@ def _segments_apart(
     if one * two < 0.0 and three * four < 0.0:
         return 0.0
     return math.sqrt(least)
+
+
+@leaf
+def _follows(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64], apart: float
+) -> bool:
+    """Whether who goes from a to b needs room that another makes by going from c to d at the same time."""
+    close = (apart - 1e-6) ** 2
+    return (
+        _point_to_segment(c[0], c[1], a[0], a[1], b[0], b[1]) < close
+        or _point_to_segment(b[0], b[1], c[0], c[1], d[0], d[1]) < close
+    )
+
+
+@leaf
+def _same_step(
+    a: NDArray[np.float64], b: NDArray[np.float64], c: NDArray[np.float64], d: NDArray[np.float64], apart: float
+) -> int:
+    """Steps that the second must be ahead of the first, in a step that both do near each other.
+
+    One, if the first needs the second's room; none (they begin together) if both need each other's, or neither does.
+    """
+    return 1 if _follows(a, b, c, d, apart) and not _follows(c, d, a, b, apart) else 0
 
 
 @leaf
@@ -54,8 +82,11 @@ def _fill(paths: NDArray[np.float64], lengths: NDArray[np.int64], apart: float, 
                 if j == i:
                     continue
                 for b in range(min(a, lengths[j] - 1), -1, -1):
-                    if _segments_apart(paths[i, a], paths[i, a + 1], paths[j, b], paths[j, b + 1]) < apart:
-                        needed[i, a, j] = b + 1 if b < a else b
+                    if _segments_apart(paths[i, a], paths[i, a + 1], paths[j, b], paths[j, b + 1]) < apart - 1e-6:
+                        needed[i, a, j] = b + 1
+                        if b == a:
+                            first, then = paths[i], paths[j]
+                            needed[i, a, j] = b + _same_step(first[a], first[a + 1], then[a], then[a + 1], apart)
                         break
 
 
