@@ -83,7 +83,7 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
 
     By robot: ``poses`` (robots, 3) as localisation gives them, ``goals`` (robots, 2), ``remaining`` [m], ``arrived``,
     ``finished``, ``collided``, ``path_lengths`` [m]. Of the team: ``collision``, ``time`` [s], ``reward_terms``,
-    ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), ``radius`` of the robots
+    ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), the robots' ``radius``
     [m]; ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``, ``makespan``
     and ``mean_time`` [s]. With ``expose_truth=True`` also ``truth``: ``poses`` and ``path_length``.
 
@@ -127,7 +127,7 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
         super().reset(seed=seed)
         self.episodes.reset([0], [self.np_random])
         self._running = True
-        return self.episodes.observe()[0], of_world(team_infos(self.episodes), 0)
+        return self.episodes.observe()[0], self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
         """Act for one decision period.
@@ -143,8 +143,14 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
         rewards, _, _ = self.episodes.step([action])
         terminated, over = bool(self.episodes.finished.all()), bool(self.episodes.over[0])
         self._running = not over
+        team = float(rewards.sum(axis=1)[0])
+        return self.episodes.observe()[0], team, terminated, over and not terminated, self._info()
+
+    def _info(self) -> Info:
+        """The only world's info; its map is a copy, since Gymnasium asks that no two steps share memory."""
         info = of_world(team_infos(self.episodes), 0)
-        return self.episodes.observe()[0], float(rewards.sum()), terminated, over and not terminated, info
+        info["map"] = info["map"].copy()
+        return info
 
     def show(self, sketch: TeamSketch) -> None:
         """Let a planner's sketch be seen in the picture until the next one."""
