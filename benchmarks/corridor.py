@@ -2,7 +2,7 @@
 
 python benchmarks/corridor.py [--steps 600]
 
-Both drive along the robots' shortest ways, slower before what is close ahead. Wall-clock on all cores, and processor time.
+Both drive along the robots' shortest ways, slower before what is close ahead. Wall-clock and processor time.
 """
 
 import argparse

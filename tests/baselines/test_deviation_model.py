@@ -1,5 +1,7 @@
 """The model of how robots stray: what is recorded is what is fitted, and risk falls with distance."""
 
+import itertools
+
 import numpy as np
 import pytest
 
@@ -22,7 +24,7 @@ def test_the_risk_falls_from_certain_to_none():
     model = DeviationModel.fitted(np.random.default_rng(1).exponential(0.05, 5_000), 28)
     risks = [model.risk(gap, 0.4) for gap in (0.0, 0.3, 0.4, 0.5, 0.7, 5.0)]
     assert risks[0] == pytest.approx(1.0, abs=0.02) and risks[-1] == 0.0
-    assert all(before >= after for before, after in zip(risks, risks[1:], strict=False))
+    assert all(before >= after for before, after in itertools.pairwise(risks))
     assert risks[2] == pytest.approx(0.5, abs=0.1)  # robots planned to touch do so about every other time
 
 

@@ -195,13 +195,13 @@ def test_what_cannot_be_is_refused_with_one_sentence(keywords, error, sentence):
 
 def test_a_goal_behind_walls_is_refused(tmp_path):
     (tmp_path / "two.map").write_text("type octile\nheight 2\nwidth 5\nmap\n..@..\n..@..\n")
-    with pytest.raises(TeamError, match="robot 0 cannot reach its goal .* no free way"):
+    with pytest.raises(TeamError, match=r"robot 0 cannot reach its goal .* no free way"):
         make(map=str(tmp_path / "two.map"), robots=1, starts=[(0.5, 0.5)], goals=[(4.5, 0.5)])
 
 
 def test_a_map_too_small_for_the_team_is_refused(tmp_path):
     (tmp_path / "one.map").write_text("type octile\nheight 1\nwidth 2\nmap\n..\n")
-    with pytest.raises(TeamError, match="no solvable starts and goals|no room"):
+    with pytest.raises(TeamError, match=r"no solvable starts and goals|no room"):
         make(map=str(tmp_path / "one.map"), robots=9, places="random").reset(seed=0)
 
 
