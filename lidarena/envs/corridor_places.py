@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from lidarena.envs.corridor_options import CorridorOptions
 from lidarena.planning.team.floor_grid import FloorGrid
+from lidarena.planning.team.plan import plan_team
 from lidarena.planning.team.roads import UNREACHABLE, Roads, roads_of
 from lidarena.planning.team.well_formed import is_well_formed
 from lidarena.world.floorplan import Floorplan
@@ -22,7 +23,9 @@ LEAST_ROOM = 0.2
 """Random places leave every robot at least a disc of this radius [m]."""
 _SPACING = 2
 """Random places lie on every so many cells."""
-_DRAWS = 2000
+_DRAWS, _QUICK_DRAWS = 300, 20
+"""So often places are drawn; first such that are known to be solvable at a glance, then such that a planner solves."""
+_ORDERS = 10
 
 Ends = tuple[NDArray[np.float64], NDArray[np.float64]]
 
@@ -64,17 +67,25 @@ class Places:
         if self._fixed is not None:
             return self._fixed
         robots = self._options.robots
-        for _ in range(_DRAWS):
+        for draw in range(_DRAWS):
             if len(self._candidates) < robots:
                 break
             starts, goals = (rng.choice(self._candidates, robots, replace=False) for _ in range(2))
             apart = self._fits(starts) and self._fits(goals) and (starts != goals).all()
-            if apart and is_well_formed(self._roads, starts, goals):
+            if apart and (is_well_formed(self._roads, starts, goals) or self._planned(starts, goals, draw)):
                 return self._points(starts), self._points(goals)
         raise TeamError(
             f"no solvable starts and goals for {robots} robots were found in map {self._plan.name!r}; "
             "fewer robots, a smaller radius or a larger map are needed"
         )
+
+    def _planned(self, starts: NDArray[np.int64], goals: NDArray[np.int64], draw: int) -> bool:
+        """Whether a planner finds a plan, where too little room is left for problems that need none to tell."""
+        if draw < _QUICK_DRAWS:
+            return False
+        cells, radius = self._roads.cells, self._roads.radius
+        ends = cells[starts], cells[goals]
+        return plan_team(self.grid.blocked, *ends, "prioritized_search", 8, radius, math.inf, iterations=_ORDERS).solved
 
     def _points(self, places: NDArray[np.int64]) -> NDArray[np.float64]:
         return self.grid.points(self._roads.cells[places])

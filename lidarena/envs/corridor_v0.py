@@ -84,8 +84,9 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
 
     ## Starting state
 
-    At rest, at the places that ``places`` names, heading along the shortest way. Places that are drawn make a
-    well-formed problem: every robot has a way clear of everybody else's start and goal, so that it can be solved.
+    At rest, at the places that ``places`` names, heading along the shortest way. Places that are drawn can be solved:
+    every robot has a way clear of everybody else's start and goal (a well-formed problem) or, where so many robots
+    leave no room for that, a planner has found a plan.
 
     ## Episode end
 
