@@ -12,6 +12,8 @@ from rich.console import Console
 from lidarena.agents.yaml_config import load_config
 from lidarena.evaluation import Comparison, ComparisonConfig, EpisodeError, compare
 from lidarena.evaluation.tables import NOTE, terminal_table
+from lidarena.evaluation.team_experiment import TeamExperimentConfig, is_team_experiment
+from lidarena.evaluation.team_tables import compare_planners, print_rows
 from lidarena.world.refusals import Refusal
 
 
@@ -21,6 +23,11 @@ def main(arguments: list[str] | None = None) -> int:
     overrides = [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
     out, err = Console(), Console(stderr=True)
     try:
+        if is_team_experiment(options.config):
+            rows, folder = compare_planners(load_config(options.config, TeamExperimentConfig, overrides), err)
+            print_rows(rows, out)
+            out.print(f"tables:   {folder}/table.md (also .csv and results.json)\nfigures:  {folder}/figures.png")
+            return 0
         comparison = compare(load_config(options.config, ComparisonConfig, overrides), err)
     except Refusal as refusal:
         print(refusal, file=sys.stderr)

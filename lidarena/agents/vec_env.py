@@ -16,7 +16,7 @@ from lidarena.world.refusals import ConfigError
 
 Arrays = dict[str, NDArray[Any]]
 
-_LOGGED = ("completeness", "success", "collision")
+_LOGGED = ("completeness", "success", "arrived", "collision")
 
 
 @runtime_checkable

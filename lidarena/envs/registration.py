@@ -5,12 +5,15 @@ from typing import Any
 import gymnasium as gym
 
 from lidarena.envs.arena import ArenaEnv
+from lidarena.envs.corridor_central import CorridorCentralEnv
+from lidarena.envs.corridor_shared import register_shared
 from lidarena.envs.exploration import ExplorationEnv
 
 EPISODE_STEPS = 1000
 """The paper's training cap."""
 ARENA_STEPS = 500
 """Five times what it takes to cross an arena."""
+CENTRAL_ID = "lidarena/CorridorCentral-v0"
 EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {
     "lidarena/Exploration-v0": "willow_lobby"
 }
@@ -26,8 +29,14 @@ def make_single_arena(max_episode_steps: int | None = None, **keywords: Any) -> 
     return ArenaEnv(max_episode_steps=max_episode_steps, **keywords)
 
 
+def make_central(max_episode_steps: int | None = None, **keywords: Any) -> CorridorCentralEnv:
+    """Entry point of ``gym.make`` for a team, as ``make_single`` for one robot."""
+    return CorridorCentralEnv(max_episode_steps=max_episode_steps, **keywords)
+
+
 def register_all() -> None:
     """Register the ids; doing so again changes nothing."""
+    _register_corridor()
     for name, plan in EXPLORATION_MAPS.items():
         if name not in gym.registry:
             gym.register(
@@ -43,4 +52,15 @@ def register_all() -> None:
             entry_point="lidarena.envs.registration:make_single_arena",
             vector_entry_point="lidarena.envs.arena:BatchedArena",
             max_episode_steps=ARENA_STEPS,
+        )
+
+
+def _register_corridor() -> None:
+    register_shared()
+    if CENTRAL_ID not in gym.registry:
+        gym.register(
+            id=CENTRAL_ID,
+            entry_point="lidarena.envs.registration:make_central",
+            vector_entry_point="lidarena.envs.corridor_central:BatchedCorridor",
+            max_episode_steps=EPISODE_STEPS,
         )

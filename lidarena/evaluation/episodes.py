@@ -130,7 +130,7 @@ def run_episode(
 def _measures(env: Env, log: "_Log", info: Mapping[str, Any], ending: str) -> dict[str, float]:
     """The measures of the environment's family."""
     family = family_of(env)
-    values = log.measures(info, ending) | _map_quality(env, info)
+    values = log.measures(info, ending) | dict(info.get("measures") or _map_quality(env, info))
     if family == "arena":
         values |= measure_drive(info, np.array(log.poses["true"]), log.scalars["clearance"], log.decisions)
     return {name: value for name, value in values.items() if name in names_for(family)}

@@ -54,6 +54,11 @@ MEASURES: tuple[Measure, ...] = (
     Measure("least_clearance", "Clearance", "m", 1, "m", "high", needs_success=True, main=True),
     Measure("smoothness", "Turning", "rad/m", 1, "rad/m", "low", needs_success=True, main=True),
     Measure("barn_score", "BARN score", better="high", main=True),
+    Measure("arrival", "Robots arrived", "%", 100, better="high", main=True),
+    Measure("all_arrived", "All arrived", "%", 100, better="high", share=True, main=True),
+    Measure("collided", "Robots collided", "%", 100, better="low", main=True),
+    Measure("makespan", "Last arrival", "s", 1, "s", "low", main=True),
+    Measure("mean_time", "Mean arrival", "s", 1, "s", "low", main=True),
     Measure("odometry_error", "Odometry error", "cm", 100, "m"),
     Measure("entropy", "Entropy", "nat", 1, "nat"),
     Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat"),
@@ -70,8 +75,9 @@ FAMILIES: dict[str, frozenset[str]] = {
         | {"entropy", "entropy_gmapping", *_EVERYWHERE}
     ),
     "arena": frozenset({"path_ratio", "least_clearance", "smoothness", "barn_score", *_EVERYWHERE}),
+    "corridor": frozenset({"arrival", "all_arrived", "collided", "makespan", "mean_time", *_EVERYWHERE}),
 }
-"""The measures of each family of environments."""
+"""The measures of each family of environments. Teams report their own by name in ``info["measures"]``."""
 
 
 def names_for(family: str | None) -> frozenset[str]:

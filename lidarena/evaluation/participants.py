@@ -12,12 +12,13 @@ from lidarena import baselines
 from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.agents.shipped import resolve
 from lidarena.baselines import Policy
+from lidarena.envs.corridor_shared import SHARED_ID
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.world.refusals import ConfigError, suggest
 
 Env = gym.Env[Any, Any]
 
-AGENT_KEYWORDS = ("observation", "reward", "action")
+AGENT_KEYWORDS = ("observation", "reward", "action", "beams", "lidar_range", "neighbours")
 """Keywords of the environments that change what an observation or an action means."""
 
 
@@ -53,6 +54,10 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
             from lidarena.agents.goal_choice_agent import GoalChoiceAgent
 
             return env, GoalChoiceAgent(env, agent)
+        if agent.env_id == SHARED_ID:
+            from lidarena.agents.shared_fleet_agent import SharedFleetAgent
+
+            return env, SharedFleetAgent(env, agent)
         if agent.action_space != env.action_space:
             raise ConfigError(
                 f"policy {entry.title!r} was trained on actions of {agent.action_space}, "

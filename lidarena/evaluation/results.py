@@ -115,7 +115,7 @@ def results_document(config: ComparisonConfig, rows: Sequence[Row]) -> dict[str,
     """Return what `results.json` holds: ``config``, ``versions`` and ``rows`` (the schema is in DESIGN.md)."""
     return {
         "config": config.model_dump(mode="json"),
-        "versions": {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES},
+        "versions": library_versions(),
         "rows": [
             {
                 "env": row.env,
@@ -126,6 +126,11 @@ def results_document(config: ComparisonConfig, rows: Sequence[Row]) -> dict[str,
             for row in rows
         ],
     }
+
+
+def library_versions() -> dict[str, str | None]:
+    """Versions of Python and of the packages that a result depends on; None where one is not installed."""
+    return {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES}
 
 
 def write_results(path: Path, config: ComparisonConfig, rows: Sequence[Row]) -> None:

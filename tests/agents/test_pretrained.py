@@ -5,6 +5,7 @@ import pytest
 
 from lidarena import agents
 from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
+from lidarena.envs.corridor_shared import SHARED_ID
 from lidarena.world.refusals import PolicyFileError
 
 
@@ -18,8 +19,8 @@ def test_a_shipped_agent_says_how_it_was_trained(name: str) -> None:
 @pytest.mark.parametrize("name", [name for name in agents.pretrained()])
 def test_a_shipped_agent_drives(name: str) -> None:
     policy = agents.load(f"pretrained:{name}")
-    if policy.env_id == GOAL_CHOICE_ID:
-        return  # tests/evaluation drives it
+    if policy.env_id in (GOAL_CHOICE_ID, SHARED_ID):
+        return  # tests/evaluation, and tests/agents/test_shared_fleet_agent.py, drive these
     env = gym.make(policy.env_id, **policy.env_keywords)
     agents.load(f"pretrained:{name}", env)
     observation, info = env.reset(seed=4)

@@ -78,3 +78,9 @@ class DeviationCosts:
             stride,
             traffic.layer,
         )
+
+    def charge(self, traffic: Traffic, robot: int) -> int:
+        """What the robots placed so far charge a robot for its path, in units of which a step has ``STEP``."""
+        layer, path = traffic.layer, traffic.paths[robot, : traffic.lengths[robot] + 1]
+        rows = np.minimum(np.arange(len(path)), len(layer) - 1)
+        return int(layer[rows, path].sum())

@@ -5,6 +5,7 @@ from numpy.typing import NDArray
 
 from lidarena.planning.team.conflicts import conflict_times
 from lidarena.planning.team.deviation import DeviationCosts
+from lidarena.planning.team.roads import STEP
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
 
@@ -43,6 +44,8 @@ def plan_independent(traffic: Traffic) -> TeamPlan:
 def plan_prioritized(traffic: Traffic, deviation: DeviationCosts | None = None) -> TeamPlan:
     """The paper's method: longest first, a robot is planned anew only if its path conflicts with one before it.
 
+    Where robots may stray from their paths, paths conflict already if the risk on the way is worth a step or more.
+
     Args:
         traffic: The team, nobody placed.
         deviation: What it costs to be where earlier robots may stray to, eq. for C_t^k in section 2.
@@ -52,7 +55,8 @@ def plan_prioritized(traffic: Traffic, deviation: DeviationCosts | None = None) 
     anew = 0
     for k, robot in enumerate(order):
         times = conflicts_of(traffic)[robot, order[:k]]
-        if k and (times >= 0).any():
+        risky = deviation is not None and deviation.charge(traffic, int(robot)) >= STEP
+        if k and ((times >= 0).any() or risky):
             anew += 1
             if not traffic.plan(np.array([robot])):
                 message = (

@@ -1,0 +1,103 @@
+"""Rigid-body motion of teams: robots that are near something move in pymunk, and who touches what is noted."""
+
+import math
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pymunk
+from numpy.typing import NDArray
+
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.kernels import leaf
+from lidarena.world.physics import Physics, RobotSpec, _build_space, _turn_wheels, chord
+
+_WALL, _ROBOT = 0, 1  # pymunk's collision types
+
+
+class TeamPhysics(Physics):
+    """The pymunk spaces of a batch of teams.
+
+    Args:
+        worlds: Number of worlds.
+        robots: Number of robots in each.
+        spec: The robots' body.
+
+    Attributes:
+        touched_wall: ``(worlds, robots)`` whether a robot touched a wall in the last ``advance``.
+        touched_robot: ``(worlds, robots)`` whether it touched another robot.
+    """
+
+    def __init__(self, worlds: int, robots: int, spec: RobotSpec) -> None:
+        super().__init__(worlds, robots, spec)
+        self.touched_wall = np.zeros((worlds, robots), np.bool_)
+        self.touched_robot = np.zeros((worlds, robots), np.bool_)
+        self._robots_of: dict[pymunk.Body, tuple[int, int]] = {}
+
+    def furnish(self, world: int, plan: Floorplan) -> None:
+        """Build the walls of one world, if they are not those that stand there already."""
+        if self._plans[world] is plan:
+            return
+        self._plans[world] = plan
+        space = self._spaces[world] = _build_space(plan)
+        space.on_collision(_ROBOT, _WALL, begin=self._note_wall)
+        space.on_collision(_ROBOT, _ROBOT, begin=self._note_robots)
+
+    def advance(self, commands: NDArray[np.float64], duration: float, near: NDArray[np.bool_]) -> None:
+        """Drive every robot for ``duration`` seconds; update ``poses`` and what was touched.
+
+        Args:
+            commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
+            duration: [s].
+            near: ``(worlds, robots)`` whether a robot may touch something meanwhile. Whoever may touch a robot must be
+                marked like it; the others are moved along the chords of their arcs without asking pymunk.
+        """
+        self.touched_wall[:] = self.touched_robot[:] = False
+        for world in np.flatnonzero(near.any(axis=1)).tolist():
+            self._push_some(world, np.flatnonzero(near[world]).tolist(), commands[world], duration)
+        glide_apart(near, commands, duration, self.poses)
+
+    def _push_some(self, world: int, robots: list[int], commands: NDArray[np.float64], duration: float) -> None:
+        """As ``Physics._push``, for some robots of a world."""
+        steps = math.ceil(duration / self.spec.substep - 1e-9)
+        space = self._spaces[world]
+        bodies = []
+        for robot in robots:
+            x, y, theta = self.poses[world, robot].tolist()
+            speed, rate = commands[robot].tolist()
+            body = self._add_robot(space)
+            next(iter(body.shapes)).collision_type = _ROBOT
+            body.position, body.angle = (x, y), theta
+            body.velocity_func = partial(_turn_wheels, speed, rate)
+            self._robots_of[body] = (world, robot)
+            bodies.append(body)
+        for _ in range(steps + 1):
+            space.step(duration / steps)
+        for robot, body in zip(robots, bodies, strict=True):
+            self.poses[world, robot] = (*body.position, math.remainder(body.angle, 2.0 * math.pi))
+        space.remove(*bodies, *(shape for body in bodies for shape in body.shapes))
+        self._robots_of.clear()
+
+    def _note_wall(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+        self.touched_wall[self._robots_of[arbiter.bodies[0]]] = True
+
+    def _note_robots(self, arbiter: pymunk.Arbiter, space: pymunk.Space, data: Any) -> None:
+        for body in arbiter.bodies:
+            self.touched_robot[self._robots_of[body]] = True
+
+
+@leaf
+def glide_apart(
+    near: NDArray[np.bool_], commands: NDArray[np.float64], duration: float, poses: NDArray[np.float64]
+) -> None:
+    """Move the robots (worlds, robots) that are not ``near`` along the chords of their arcs; see ``advance``."""
+    for world in range(poses.shape[0]):
+        for robot in range(poses.shape[1]):
+            if near[world, robot]:
+                continue
+            vx, vy = chord(poses[world, robot, 2], commands[world, robot, 0], commands[world, robot, 1], duration)
+            theta = poses[world, robot, 2] + commands[world, robot, 1] * duration
+            theta -= 2.0 * math.pi * math.floor(theta / (2.0 * math.pi) + 0.5)
+            poses[world, robot, 0] += vx * duration
+            poses[world, robot, 1] += vy * duration
+            poses[world, robot, 2] = theta
