@@ -53,4 +53,5 @@ def commands_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
 
 def _show(actions: Any, worlds: int) -> str:
     text = repr(actions[0]) if worlds == 1 and np.ndim(actions) >= 1 else repr(actions)
+    text = " ".join(text.split())  # NumPy breaks the lines of long arrays
     return text if len(text) < 80 else text[:77] + "..."

@@ -26,6 +26,8 @@ up to 0.9 s, 629 times); more than this is another recording."""
 _GZIP = b"\x1f\x8b"
 _KEYWORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _MAX_BEAMS = 20_000
+_FARTHEST = float(np.finfo(np.float32).max)
+"""Ranges are kept in single precision, where a larger one would be infinite [m]."""
 _MOUNT_SPREAD = 0.02
 """A laser whose pose on the robot varies by more than this [m, rad] is not bolted to it: some logs store a corrected
 pose there."""
@@ -220,7 +222,8 @@ def _flaser(words: list[str]) -> _Message:
     if len(words) != n + 11:
         raise _TornLineError(f"FLASER has {len(words)} words where {n + 11} are needed for {n} beams")
     angles = _front_angles(n)
-    scan = _Scan("FLASER", np.array(_numbers(words[2 : n + 2], n, least=0.0)), angles[0], angles[1] - angles[0])
+    ranges = np.array(_numbers(words[2 : n + 2], n, least=0.0, most=_FARTHEST))
+    scan = _Scan("FLASER", ranges, angles[0], angles[1] - angles[0])
     return _numbers(words[n + 8 : n + 9], 1)[0], _numbers(words[n + 5 : n + 8], 3), scan
 
 
@@ -238,7 +241,7 @@ def _robotlaser(words: list[str]) -> _Message:
     if not (0.0 < step < math.pi and longest > 0.0):
         raise _TornLineError(f"ROBOTLASER1 has beams {step:g} rad apart, up to {longest:g} m")
     laser, robot = np.array(_numbers(rest[0:3], 3)), _numbers(rest[3:6], 3)
-    ranges = np.array(_numbers(words[9 : 9 + n], n, least=0.0))
+    ranges = np.array(_numbers(words[9 : 9 + n], n, least=0.0, most=_FARTHEST))
     scan = _Scan("ROBOTLASER1", ranges, start, step, longest, between(np.array(robot), laser))
     return _numbers(rest[11:12], 1)[0], robot, scan
 
@@ -260,16 +263,17 @@ def _mount(mounts: list[NDArray[np.float64]]) -> NDArray[np.float64]:
     return middle if np.abs(np.array(mounts) - middle).max() < _MOUNT_SPREAD else np.zeros(3)
 
 
-def _numbers(words: list[str], count: int, least: float = -math.inf) -> list[float]:
-    """So many finite numbers from ``least`` on."""
+def _numbers(words: list[str], count: int, least: float = -math.inf, most: float = math.inf) -> list[float]:
+    """So many finite numbers from ``least`` to ``most``."""
     if len(words) != count:
         raise _TornLineError(f"{count} numbers are needed where it has {len(words)}")
     try:
         values = [float(word) for word in words]
     except ValueError as error:
         raise _TornLineError(f"it has {str(error).rpartition(': ')[2][:30]} where a number is needed") from None
-    if not (math.isfinite(sum(values)) and min(values) >= least):
-        raise _TornLineError(f"it has {min(values):g} where a finite number is needed, ranges from 0 on")
+    if not (math.isfinite(sum(values)) and least <= min(values) and max(values) <= most):
+        wrong = [value for value in values if not (math.isfinite(value) and least <= value <= most)] or [max(values)]
+        raise _TornLineError(f"it has {wrong[0]:g} where a finite number is needed, ranges from 0 on")
     return values
 
 

@@ -30,7 +30,7 @@ def load_scenario(
 
     Raises:
         ScenarioError: The file is missing or torn, belongs to another map, has too few robots, or has a start or
-            goal in a wall.
+            goal in a wall; or fewer than one robot is asked for.
     """
     where = f"scenario {os.fspath(path)!r}"
     try:
@@ -41,10 +41,10 @@ def load_scenario(
         raise ScenarioError(f"{where} is not a MovingAI scenario: it holds a byte that is not ASCII text") from error
     if not lines or lines[0].split()[:1] != ["version"]:
         raise ScenarioError(f"{where} is not a MovingAI scenario: its first line must be 'version 1'")
-    entries = [line for line in lines[1:] if line.strip()]
-    if robots is not None and robots > len(entries):
+    entries = [(number, line) for number, line in enumerate(lines[1:], start=2) if line.strip()]
+    if robots is not None and not 1 <= robots <= len(entries):
         raise ScenarioError(f"{where} has starts for {len(entries)} robots; {robots} are asked for")
-    rows = [_read_entry(where, i + 2, line, free.shape, map_name) for i, line in enumerate(entries[:robots])]
+    rows = [_read_entry(where, number, line, free.shape, map_name) for number, line in entries[:robots]]
     ends = np.array(rows, np.int64).reshape(-1, 2, 2)
     ends[:, :, 0] = free.shape[0] - 1 - ends[:, :, 0]
     for robot, kind in np.argwhere(~free[ends[:, :, 0], ends[:, :, 1]]):

@@ -38,7 +38,10 @@ def test_the_first_robots_are_taken(tmp_path: Path) -> None:
         ("version 1\n" + LINE[:12], {}, "torn in line 2"),
         ("version 1\n" + LINE + LINE.replace("3.41", ""), {}, "torn in line 3"),
         ("version 1\n" + LINE.replace("\t2\t1\t", "\ttwo\t1\t"), {}, "torn in line 2"),
+        ("version 1\n\n" + LINE + "\n" + LINE[:12], {}, "torn in line 5"),
         ("version 1\n" + LINE, {"robots": 2}, "starts for 1 robots; 2 are asked for"),
+        ("version 1\n" + LINE + LINE, {"robots": -1}, "starts for 2 robots; -1 are asked for"),
+        ("version 1\n" + LINE, {"robots": 0}, "starts for 1 robots; 0 are asked for"),
         ("version 1\n" + LINE, {"map_name": "other.map"}, "for the map 'grid.map'; the map given is 'other.map'"),
         ("version 1\n" + LINE.replace("\t3\t2\t", "\t9\t2\t"), {}, "a map of 9 x 2 cells"),
         (
