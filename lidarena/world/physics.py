@@ -100,11 +100,11 @@ class Physics:
         spec, space = self._specs[world], self._space(world)
         steps = math.ceil(duration / spec.substep - 1e-9)
         space.remove(*space.bodies, *(shape for body in space.bodies for shape in body.shapes))
-        bodies = [_add_robot(space, spec) for _ in commands]
+        bodies = [add_robot(space, spec) for _ in commands]
         for body, (speed, rate), (x, y, theta) in zip(bodies, commands, self.poses[world].tolist(), strict=True):
             body.position, body.angle = (x, y), theta
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
-            body.velocity_func = partial(_turn_wheels, speed, rate)
+            body.velocity_func = partial(turn_wheels, speed, rate)
         for _ in range(steps + 1):
             space.step(duration / steps)
         self.poses[world] = [(*body.position, math.remainder(body.angle, 2.0 * math.pi)) for body in bodies]
@@ -115,7 +115,7 @@ class Physics:
         if space is None:
             plan = self._plans[world]
             assert plan is not None, "place() comes first"
-            space = self._spaces[world] = _build_space(plan)
+            space = self._spaces[world] = build_space(plan)
             space.on_collision(begin=partial(self._touch, world))
         return space
 
@@ -183,13 +183,14 @@ def chord(heading: float, speed: float, rate: float, dt: float) -> tuple[float, 
     return along * math.cos(heading + half), along * math.sin(heading + half)
 
 
-def _turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
+def turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
     """Velocity callback of pymunk: what the wheels do, before contacts have their say."""
     body.velocity = chord(body.angle, speed, rate, dt)
     body.angular_velocity = rate
 
 
-def _add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
+def add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
+    """Put a new body in a space."""
     body = pymunk.Body(spec.mass, pymunk.moment_for_circle(spec.mass, 0.0, spec.radius))
     shape = pymunk.Circle(body, spec.radius)
     shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
@@ -197,7 +198,8 @@ def _add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
     return body
 
 
-def _build_space(plan: Floorplan) -> pymunk.Space:
+def build_space(plan: Floorplan) -> pymunk.Space:
+    """A space with the walls and pillars of a floor plan."""
     space = pymunk.Space()
     space.collision_slop = _SLOP
     walls: list[pymunk.Shape] = [

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.kernels import leaf
-from lidarena.world.physics import Physics, RobotSpec, _build_space, _turn_wheels, chord
+from lidarena.world.physics import Physics, RobotSpec, add_robot, build_space, chord, turn_wheels
 
 _WALL, _ROBOT = 0, 1  # pymunk's collision types
 
@@ -39,7 +39,7 @@ class TeamPhysics(Physics):
         if self._plans[world] is plan:
             return
         self._plans[world] = plan
-        space = self._spaces[world] = _build_space(plan)
+        space = self._spaces[world] = build_space(plan)
         space.on_collision(_ROBOT, _WALL, begin=self._note_wall)
         space.on_collision(_ROBOT, _ROBOT, begin=self._note_robots)
 
@@ -60,15 +60,15 @@ class TeamPhysics(Physics):
     def _push_some(self, world: int, robots: list[int], commands: NDArray[np.float64], duration: float) -> None:
         """As ``Physics._push``, for some robots of a world."""
         steps = math.ceil(duration / self.spec.substep - 1e-9)
-        space = self._spaces[world]
+        space = self._space(world)
         bodies = []
         for robot in robots:
             x, y, theta = self.poses[world, robot].tolist()
             speed, rate = commands[robot].tolist()
-            body = self._add_robot(space)
+            body = add_robot(space, self.spec)
             next(iter(body.shapes)).collision_type = _ROBOT
             body.position, body.angle = (x, y), theta
-            body.velocity_func = partial(_turn_wheels, speed, rate)
+            body.velocity_func = partial(turn_wheels, speed, rate)
             self._robots_of[body] = (world, robot)
             bodies.append(body)
         for _ in range(steps + 1):

@@ -18,7 +18,7 @@ YANG = EnvEntry(id="lidarena/Arena-v0", keywords={"arena": "yang"})
 
 def test_the_table_has_a_thousand_random_arenas_three_hundred_traps_and_every_barn_world() -> None:
     config = load_config(TABLE, ComparisonConfig)
-    counts = {env.label: len(config.seeds_in(env)) for env in config.envs}
+    counts = {env.label: len(config.seeds(env)) for env in config.envs}
     random = [count for label, count in counts.items() if "density" in label]
     assert len(random) == 3 and sum(random) >= 1000
     assert counts["U traps"] == 300 and counts["BARN"] == 150

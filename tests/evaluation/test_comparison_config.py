@@ -28,7 +28,7 @@ def test_overrides_reach_into_lists() -> None:
 def test_an_environment_may_have_its_own_number_of_episodes() -> None:
     envs = ["lidarena/Env1-v0", {"id": "lidarena/Env2-v0", "episodes": 2}]
     config = check_config({**MINIMAL, "envs": envs, "episodes": 4, "seed": 7}, ComparisonConfig)
-    assert [list(config.seeds_in(env)) for env in config.envs] == [[7, 8, 9, 10], [7, 8]]
+    assert [list(config.seeds(env)) for env in config.envs] == [[7, 8, 9, 10], [7, 8]]
 
 
 def test_a_written_config_reads_back_equal(tmp_path: Path) -> None:
