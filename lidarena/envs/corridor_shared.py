@@ -35,7 +35,7 @@ class SharedCorridor(VectorEnv[NDArray[np.float32], Any, Any]):
         **keywords: See ``CorridorOptions``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}
+    metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}  # type: ignore[misc]
     family = "corridor"
 
     def __init__(self, num_envs: int = 4, **keywords: Any) -> None:
