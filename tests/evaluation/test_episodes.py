@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from lidarena.evaluation.episodes import policy_seed, run_episode, without_truth
-from lidarena.evaluation.measures import BY_NAME
+from lidarena.evaluation.measures import names_for
 from lidarena.evaluation.participants import make_env
 from tests.evaluation.fake_world import Crasher, Driver
 
@@ -37,7 +37,7 @@ def test_measures_of_a_known_episode() -> None:
     episode = run_episode(env, Driver(env, back=0.0), seed=3)
     steps = 35  # from 0.3 m in steps of 0.1 m to 99.5% of 3.8 m
     values = episode.measures
-    assert set(values) == set(BY_NAME)
+    assert set(values) == names_for("exploration")
     assert episode.seed == 3 and episode.ending == "success"
     assert (values["success"], values["collision"], values["steps"]) == (1.0, 0.0, steps)
     assert values["completeness"] == pytest.approx(1.0)
