@@ -179,7 +179,7 @@ class BatchedCorridor(VectorEnv[Any, Any, Any]):
         **keywords: See ``CorridorOptions``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {
+    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
         "render_modes": ["rgb_array"],
         "render_fps": 5,
         "autoreset_mode": AutoresetMode.SAME_STEP,
@@ -212,8 +212,9 @@ class BatchedCorridor(VectorEnv[Any, Any, Any]):
         if not self._generators:
             raise ResetNeeded("step() needs running episodes; call reset() first")
         by_robot, _, _ = self.episodes.step(actions)
-        rewards = by_robot.sum(axis=1)
-        terminated, over = self.episodes.finished.all(axis=1), self.episodes.over
+        rewards: NDArray[np.float64] = by_robot.sum(axis=1)
+        terminated: NDArray[np.bool_] = self.episodes.finished.all(axis=1)
+        over = self.episodes.over
         observations, everyone = self.episodes.observe(), np.ones(self.num_envs, np.bool_)
         infos: Info = {}
         if over.any():

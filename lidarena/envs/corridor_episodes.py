@@ -127,7 +127,7 @@ class CorridorEpisodes:
         before: NDArray[np.float64],
     ) -> NDArray[np.float64]:
         senses, period = self.core.senses, self.options.decision_period
-        raw = {
+        raw: dict[str, NDArray[Any]] = {
             "progress": before - senses.remaining,
             "arrival": arriving,
             "collision": -1.0 * touching,
@@ -149,7 +149,8 @@ class CorridorEpisodes:
     @property
     def time(self) -> NDArray[np.float64]:
         """(worlds,) since the episodes began [s]."""
-        return self.steps * self.options.decision_period
+        seconds: NDArray[np.float64] = self.steps * self.options.decision_period
+        return seconds
 
     @property
     def over(self) -> NDArray[np.bool_]:

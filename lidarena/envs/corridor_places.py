@@ -139,7 +139,8 @@ class Places:
         free = load_movingai(file)
         scenario = load_scenario(path, free, self._options.robots, Path(file).name)
         cell = float(options.partition("=")[2] or 1.0)  # the only option of such a map, which has been loaded already
-        starts, goals = ((cells[:, ::-1] + 0.5) * cell for cells in scenario)
+        starts: NDArray[np.float64] = (scenario.starts[:, ::-1] + 0.5) * cell
+        goals: NDArray[np.float64] = (scenario.goals[:, ::-1] + 0.5) * cell
         return starts, goals
 
     def _predefined(self) -> NDArray[np.int64]:

@@ -32,7 +32,7 @@ def agent_name(robot: int) -> str:
     return f"robot_{robot}"
 
 
-class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
+class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]  # PettingZoo is untyped
     """Robots share a building; each must reach its goal without touching a wall or another robot.
 
     ## Description
@@ -189,11 +189,10 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):
         rewards, terminated, truncated = self.episodes.step(table)
         agents = self.agents
         self.agents = [n for n in agents if not (terminated[0, self._numbers[n]] or truncated[0, self._numbers[n]])]
-        parts = [
-            {name: kind(values[0, self._numbers[name]]) for name in agents}
-            for kind, values in ((float, rewards), (bool, terminated), (bool, truncated))
-        ]
-        return self._observations(agents), parts[0], parts[1], parts[2], self._infos(agents)
+        gains = {name: float(rewards[0, self._numbers[name]]) for name in agents}
+        ended = {name: bool(terminated[0, self._numbers[name]]) for name in agents}
+        cut_off = {name: bool(truncated[0, self._numbers[name]]) for name in agents}
+        return self._observations(agents), gains, ended, cut_off, self._infos(agents)
 
     def _check_agents(self, actions: dict[str, Any]) -> None:
         for name in actions:

@@ -200,7 +200,7 @@ def _draw_optimum(axes: "Axes", rows: Sequence[Row]) -> None:
 
 def _draw_teams(axes: "Axes", rows: Sequence[Row], scale: float) -> None:
     for (env, method), group in groupby(
-        sorted(rows, key=lambda row: (row.env, METHODS.index(row.method) if row.method else 0)),  # type: ignore[arg-type]
+        sorted(rows, key=lambda row: (row.env, METHODS.index(row.method) if row.method else 0)),
         key=lambda row: (row.env, row.method),
     ):
         own = list(group)
