@@ -149,8 +149,7 @@ class CorridorEpisodes:
     @property
     def time(self) -> NDArray[np.float64]:
         """(worlds,) since the episodes began [s]."""
-        seconds: NDArray[np.float64] = self.steps * self.options.decision_period
-        return seconds
+        return self.steps.astype(np.float64) * self.options.decision_period
 
     @property
     def over(self) -> NDArray[np.bool_]:
