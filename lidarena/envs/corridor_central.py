@@ -213,8 +213,7 @@ class BatchedCorridor(VectorEnv[Any, Any, Any]):
             raise ResetNeeded("step() needs running episodes; call reset() first")
         by_robot, _, _ = self.episodes.step(actions)
         rewards: NDArray[np.float64] = by_robot.sum(axis=1)
-        terminated = np.asarray(self.episodes.finished.all(axis=1))
-        over = self.episodes.over
+        terminated, over = np.asarray(self.episodes.finished.all(axis=1)), self.episodes.over
         observations, everyone = self.episodes.observe(), np.ones(self.num_envs, np.bool_)
         infos: Info = {}
         if over.any():

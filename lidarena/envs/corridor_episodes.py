@@ -149,7 +149,7 @@ class CorridorEpisodes:
     @property
     def time(self) -> NDArray[np.float64]:
         """(worlds,) since the episodes began [s]."""
-        return self.options.decision_period * self.steps.astype(np.float64)
+        return self.steps.astype(np.float64) * self.options.decision_period
 
     @property
     def over(self) -> NDArray[np.bool_]:

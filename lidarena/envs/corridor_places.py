@@ -139,8 +139,8 @@ class Places:
         free = load_movingai(file)
         scenario = load_scenario(path, free, self._options.robots, Path(file).name)
         cell = float(options.partition("=")[2] or 1.0)  # the only option of such a map, which has been loaded already
-        starts, goals = (cell * (cells[:, ::-1].astype(np.float64) + 0.5) for cells in scenario)
-        return starts, goals
+        starts, goals = (cells[:, ::-1].astype(np.float64) + 0.5 for cells in scenario)
+        return starts * cell, goals * cell
 
     def _predefined(self) -> NDArray[np.int64]:
         known = team_places(self._plan.name)

@@ -35,7 +35,10 @@ class SharedCorridor(VectorEnv[NDArray[np.float32], Any, Any]):
         **keywords: See ``CorridorOptions``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {"render_modes": [], "autoreset_mode": AutoresetMode.SAME_STEP}  # type: ignore[misc]
+    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
+        "render_modes": [],
+        "autoreset_mode": AutoresetMode.SAME_STEP,
+    }
     family = "corridor"
 
     def __init__(self, num_envs: int = 4, **keywords: Any) -> None:

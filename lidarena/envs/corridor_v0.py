@@ -189,11 +189,10 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         rewards, terminated, truncated = self.episodes.step(table)
         agents = self.agents
         self.agents = [n for n in agents if not (terminated[0, self._numbers[n]] or truncated[0, self._numbers[n]])]
-        numbers = [(name, self._numbers[name]) for name in agents]
-        earned = {name: float(rewards[0, k]) for name, k in numbers}
-        ended = {name: bool(terminated[0, k]) for name, k in numbers}
-        cut_off = {name: bool(truncated[0, k]) for name, k in numbers}
-        return self._observations(agents), earned, ended, cut_off, self._infos(agents)
+        gains = {name: float(rewards[0, self._numbers[name]]) for name in agents}
+        ended = {name: bool(terminated[0, self._numbers[name]]) for name in agents}
+        cut_off = {name: bool(truncated[0, self._numbers[name]]) for name in agents}
+        return self._observations(agents), gains, ended, cut_off, self._infos(agents)
 
     def _check_agents(self, actions: dict[str, Any]) -> None:
         for name in actions:
