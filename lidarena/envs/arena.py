@@ -77,7 +77,7 @@ class ArenaEnv(gym.Env[Any, Any]):
     ``success``, ``robot_radius`` [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the world:
     ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min, x_max,
     y_max [m]. With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and
-    ``optimal_time`` (BARN's, [s]; NaN elsewhere), for evaluation.
+    ``optimal_time`` (BARN's, [s]; infinite elsewhere), for evaluation.
 
     ## Arguments
 

@@ -35,12 +35,12 @@ class Course:
     Attributes:
         arena: Circles, start, goal, bounds and robot; no circle and no robot is a point.
         plan: What robot and lidar meet.
-        optimal_time: What BARN scores a drive by: its reference path at 2 m/s [s]; NaN in all other arenas.
+        optimal_time: What BARN scores a drive by: its reference path at 2 m/s [s]; infinite elsewhere.
     """
 
     arena: Arena
     plan: Floorplan
-    optimal_time: float = math.nan
+    optimal_time: float = math.inf
 
 
 @dataclass(frozen=True)

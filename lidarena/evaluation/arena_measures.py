@@ -52,9 +52,9 @@ def barn_score(success: bool, time: float, optimal_time: float) -> float:
     Args:
         success: Whether the goal was reached without a collision.
         time: T, what it took [s].
-        optimal_time: OT, the reference path's length over 2 m/s [s]; NaN gives NaN.
+        optimal_time: OT, the reference path's length over 2 m/s [s]; infinite gives NaN.
     """
-    if math.isnan(optimal_time):
+    if math.isinf(optimal_time):
         return math.nan
     return success * optimal_time / min(max(time, _FASTEST * optimal_time), _SLOWEST * optimal_time)
 

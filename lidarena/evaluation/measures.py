@@ -75,7 +75,7 @@ FAMILIES: dict[str, frozenset[str]] = {
         | {"entropy", "entropy_gmapping", *_EVERYWHERE}
     ),
     "arena": frozenset({"path_ratio", "least_clearance", "smoothness", "barn_score", *_EVERYWHERE}),
-    "corridor": frozenset({"arrival", "all_arrived", "collided", "makespan", "mean_time", *_EVERYWHERE}),
+    "corridor": frozenset({"arrival", "all_arrived", "collided", "makespan", "mean_time", "path_length", *_EVERYWHERE}),
 }
 """The measures of each family of environments. Teams report their own by name in ``info["measures"]``."""
 

@@ -57,5 +57,5 @@ def test_no_arena_of_the_training_is_in_the_table() -> None:
     training = load_config(ROOT / "configs" / "train" / "arena.yaml", TrainingConfig)
     assert ArenaOptions.checked(training.env.keywords).pick == "random"  # so its numbers begin at FIRST_DRAWN
     table = load_config(TABLE, ComparisonConfig)
-    assert max(max(table.seeds_in(env)) for env in table.envs) < FIRST_DRAWN
+    assert max(max(table.seeds(env)) for env in table.envs) < FIRST_DRAWN
     assert training.env.keywords["knowledge"] == "lidar"
