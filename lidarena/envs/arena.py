@@ -43,9 +43,11 @@ class ArenaEnv(gym.Env[Any, Any]):
 
     | Num | Observation | Min | Max |
     |-----|-------------|-----|-----|
-    | 0 … beams - 1 | lidar, the first beam straight ahead, counter-clockwise, over the longest range | 0 | 1 |
+    | 0 … beams - 1 | lidar, the first beam straight ahead, counter-clockwise; see below | 0 | 1 |
     | beams | distance to the goal over 150 m (to scale), at most 1 | 0 | 1 |
     | beams + 1, + 2 | cosine and sine of the goal's bearing | -1 | 1 |
+
+    ``observation="ranges"`` gives beams over the longest range, ``"proximity"`` the robot's radius over the beam.
 
     ## Rewards
 

@@ -114,7 +114,9 @@ class ArenaEpisodes:
         """Fresh observations (worlds, beams + 3)."""
         core = self.core
         out = np.empty((core.worlds, self.options.beams + 3), np.float32)
-        observe(core.physics.poses, core.goals, core.max_range, _FAR * core.side, core.senses, out)
+        proximity = self.options.observation == "proximity"
+        far = _FAR * core.side
+        observe(core.physics.poses, core.goals, core.max_range, far, core.radii, proximity, core.senses, out)
         return out
 
     def infos(self) -> Info:

@@ -148,6 +148,8 @@ def observe(
     goals: NDArray[np.float64],
     max_range: float,
     side: float,
+    radii: NDArray[np.float64],
+    proximity: bool,
     senses: Senses,
     out: NDArray[np.float32],
 ) -> None:
@@ -158,13 +160,16 @@ def observe(
         goals: (W, 2) [m].
         max_range: Of the lidar [m].
         side: Distances to the goal are given over this [m].
+        radii: (W,) of the robots [m].
+        proximity: Whether beams are given as the radius over the range, at most 1, or as the range over the longest.
         senses: Of the worlds.
-        out: (W, beams + 3) output: ranges over the longest, distance, cosine and sine of the goal's bearing.
+        out: (W, beams + 3) output: beams, distance, cosine and sine of the goal's bearing.
     """
     beams = out.shape[1] - 3
     for w in range(out.shape[0]):
         for k in range(beams):
-            out[w, k] = senses.scans[w, 0, k] / max_range
+            scan = senses.scans[w, 0, k]
+            out[w, k] = radii[w] / max(np.float64(scan), radii[w]) if proximity else scan / max_range
         x, y, distance = goals[w, 0] - poses[w, 0, 0], goals[w, 1] - poses[w, 0, 1], senses.distance[w]
         cos, sin = math.cos(poses[w, 0, 2]), math.sin(poses[w, 0, 2])
         out[w, beams] = min(distance / side, 1.0)

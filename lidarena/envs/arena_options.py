@@ -16,6 +16,7 @@ REWARD_TERMS = ("progress", "success", "collision", "time", "clearance", "turn")
 _CHOICES = {
     "pick": ("random", "by_seed"),
     "action": ("continuous", "discrete"),
+    "observation": ("ranges", "proximity"),
     "knowledge": ("map", "lidar"),
     "field": ("robust", "paper", "traditional"),
     "render_mode": (None, "rgb_array"),
@@ -43,6 +44,8 @@ class ArenaOptions:
             ``reset(seed=s)`` (of two or more entries number s // n of entry s mod n), and draws where no seed is given.
         solvable: Pass over ``"random"`` arenas in which A* finds no path.
         action: ``"continuous"`` or ``"discrete"`` headings.
+        observation: ``"ranges"`` shows the beams over the longest range, ``"proximity"`` the robot's radius over them,
+            which tells near obstacles apart: 1 is contact.
         beams: Of the lidar.
         max_range: Of the lidar [m]; None: 30 m in a 100 m room, and to scale in others.
         lidar_noise: Standard deviation of a range [m].
@@ -71,6 +74,7 @@ class ArenaOptions:
     pick: str = "random"
     solvable: bool = False
     action: str = "continuous"
+    observation: str = "ranges"
     beams: int = 36
     max_range: float | None = None
     lidar_noise: float = 0.0

@@ -149,6 +149,17 @@ def test_the_observation_is_in_the_robots_frame() -> None:
     assert observation[38] == pytest.approx(-40 / math.hypot(1, 40), abs=1e-6)
 
 
+def test_proximity_is_the_radius_over_the_range() -> None:
+    ranges, near = (ArenaEnv(arena=PILLAR, start=(40.0, 50.0), observation=kind) for kind in ("ranges", "proximity"))
+    seen, info = ranges.reset(seed=0)
+    close, _ = near.reset(seed=0)
+    assert close[:36] == pytest.approx(1.0 / info["scan"], rel=1e-6) and close[0] == pytest.approx(1.0 / 5.0)
+    assert close[36:].tolist() == seen[36:].tolist()
+    for _ in range(5):
+        close, *_ = near.step(np.zeros(1, np.float32))
+    assert close[0] == pytest.approx(1.0, abs=1e-3)  # contact
+
+
 def test_reward_terms_are_weighted_by_keywords() -> None:
     weights = {"progress": 2.0, "time": 0.5, "clearance": 3.0, "turn": 4.0}
     env = ArenaEnv(arena=PILLAR, start=(43.0, 50.0), **{f"{term}_weight": weight for term, weight in weights.items()})
