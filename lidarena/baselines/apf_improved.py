@@ -45,5 +45,5 @@ class ImprovedField(PlannedDrive):
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", FieldWarning)  # a goal close to an obstacle is the arena's, not the user's
             result = plan_path(*world.scene, self._preset, world.radius, world.bounds, **self._field)
-        self.fills = result.fills
+        self.fills, self.before = result.fills, result.path
         return result.smoothed if result.success else result.path

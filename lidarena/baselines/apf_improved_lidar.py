@@ -69,6 +69,7 @@ class ImprovedLidarField:
         if self._follower is None or (new and self._follower.is_blocked(wide)):
             discs = np.column_stack([points, np.minimum(radius, _CLOSE * away)])
             path = self._search(discs, pose[:2], info["goal"])
+            self._wheel.show(path)
             self._follower = PathFollower(path, self._wheel.step, discs)
             self.plans += 1
         return self._wheel.towards(self._follower.heading(pose), pose)

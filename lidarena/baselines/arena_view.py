@@ -68,6 +68,12 @@ class Wheel:
         inner = getattr(env, "unwrapped", env)
         self._space: gym.Space[Any] = getattr(env, "single_action_space", env.action_space)
         self.step = float(inner.step_length)
+        self._show = getattr(inner, "show", None)
+
+    def show(self, plan: NDArray[np.float64], before: NDArray[np.float64] | None = None) -> None:
+        """Let a plan be seen in the picture of a single environment, see ``ArenaEnv.show``."""
+        if self._show is not None:
+            self._show(plan, before)
 
     def towards(self, heading: float, pose: NDArray[np.float64]) -> Any:
         """The action after which the robot drives on a heading [rad], from its pose (3,)."""

@@ -22,11 +22,13 @@ class PlannedDrive(ABC):
     Attributes:
         finished: The path ends short of the goal, and the robot is within a step of its end.
         path: (S, 2) what it follows [m]; empty before the first decision.
+        before: (M, 2) the path before it was smoothed [m], for the picture; None if it was not.
     """
 
     name: ClassVar[str]
     guarded: ClassVar[bool] = True
     """Whether a step that would hit something turns aside."""
+    before: NDArray[np.float64] | None = None
 
     def __init__(self, env: Any) -> None:
         self._wheel = Wheel(env)
@@ -56,6 +58,7 @@ class PlannedDrive(ABC):
         if self._follower is None:
             world = known_world(self.name, info)
             self.path = self.plan(world)
+            self._wheel.show(self.path, self.before)
             self._ends_early = self._stops_short(world)
             discs, walls = world.grown() if self.guarded else (np.empty((0, 3)), NO_WALLS)
             self._follower = PathFollower(self.path, self._wheel.step, discs, walls)

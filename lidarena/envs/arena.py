@@ -151,6 +151,16 @@ class ArenaEnv(gym.Env[Any, Any]):
         """What the robot drives in a decision period [m]."""
         return self._episodes.core.step_length
 
+    def show(self, plan: NDArray[np.float64], before: NDArray[np.float64] | None = None) -> None:
+        """Let a policy's plan be seen in the picture until its next one, in place of the field's own.
+
+        Args:
+            plan: (S, 2) [m].
+            before: (M, 2) the plan before it was smoothed, along which the picture shows forces [m].
+        """
+        if self._episodes.recorder is not None:
+            self._episodes.recorder.show(0, plan, before)
+
     def render(self) -> NDArray[np.uint8] | None:
         """Picture (height, width, 3) of the potential, the plan and the way driven; None without ``render_mode``.
 

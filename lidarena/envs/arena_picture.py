@@ -23,7 +23,7 @@ _OBSTACLE = (238, 238, 240)
 
 
 class PathRecorder:
-    """Remembers what the picture draws: where the robots drove, and the landscapes of their arenas.
+    """Remembers what the picture draws: where the robots drove, their plans, and the landscapes of their arenas.
 
     Args:
         worlds: Number of worlds.
@@ -32,11 +32,13 @@ class PathRecorder:
     def __init__(self, worlds: int) -> None:
         self._paths: list[list[NDArray[np.float64]]] = [[] for _ in range(worlds)]
         self._landscapes: list[Landscape | None] = [None] * worlds
+        self._plans: list[tuple[NDArray[np.float64], NDArray[np.float64] | None] | None] = [None] * worlds
 
     def begin(self, world: int, core: "ArenaCore") -> None:
         """Start one world's path anew."""
         self._paths[world] = [core.physics.poses[world, 0, :2].copy()]
         self._landscapes[world] = None
+        self._plans[world] = None
 
     def begun(self, world: int) -> bool:
         """Whether a world has an episode to draw."""
@@ -50,6 +52,14 @@ class PathRecorder:
     def path(self, world: int) -> NDArray[np.float64]:
         """(steps, 2) positions [m]."""
         return np.array(self._paths[world])
+
+    def show(self, world: int, plan: NDArray[np.float64], before: NDArray[np.float64] | None) -> None:
+        """Draw a policy's plan, and what it was before it was smoothed, instead of the field's."""
+        self._plans[world] = plan.copy(), None if before is None else before.copy()
+
+    def plan(self, world: int, land: Landscape) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """What was shown last, else the plan of the field."""
+        return self._plans[world] or (land.plan.smoothed, land.plan.path)
 
     def landscape(self, world: int, core: "ArenaCore") -> Landscape:
         """The landscape of a world's arena, surveyed when it is first asked for."""
@@ -76,9 +86,11 @@ def draw_arena(core: "ArenaCore", recorder: PathRecorder, world: int) -> NDArray
         for x, y, radius in arena.circles:
             canvas.dots(np.array([[x, y]]), INK, radius * scale + 1.0)
             canvas.dots(np.array([[x, y]]), _OBSTACLE, radius * scale)
-    canvas.line(land.plan.path, ORANGE, 2)
-    canvas.line(land.plan.smoothed, BLUE, 2)
-    _draw_forces(canvas, land)
+    plan, before = recorder.plan(world, land)
+    if before is not None:
+        canvas.line(before, ORANGE, 2)
+        _draw_forces(canvas, land, before)
+    canvas.line(plan, BLUE, 2)
     canvas.line(recorder.path(world), GREEN, 3)
     _draw_scan(canvas, core, world)
     _draw_places(canvas, land, np.array(arena.goal))
@@ -102,9 +114,8 @@ def _draw_potential(canvas: Canvas, land: Landscape) -> None:
     canvas.image[edge] = (canvas.image[edge] * 0.72).astype(np.uint8)
 
 
-def _draw_forces(canvas: Canvas, land: Landscape) -> None:
+def _draw_forces(canvas: Canvas, land: Landscape, path: NDArray[np.float64]) -> None:
     """Arrows of one length in the direction of the force, at points along the plan before regression search."""
-    path = land.plan.path
     every = max(1, len(path) // _ARROWS)
     places = path[every // 2 :: every]
     force = land.field.force(places)
@@ -158,7 +169,7 @@ def _framed(panel: NDArray[np.uint8], headline: str, field: str) -> NDArray[np.u
     write(image, f"potential of the field '{field}': dark is low, lines of equal potential", 8, 36, INK, 0.4)
     lines: list[list[tuple[str, Colour]]] = [
         [("driven", GREEN), ("lidar hits", RED), ("goal (ring)", RED), ("minimum of the potential (x)", MAGENTA)],
-        [("plan", ORANGE), ("plan after regression search", BLUE), ("force along the plan (arrows)", INK)],
+        [("plan", BLUE), ("before regression search", ORANGE), ("force along that (arrows)", INK)],
     ]
     for row, words in enumerate(lines):
         column = 8

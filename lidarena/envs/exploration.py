@@ -53,8 +53,8 @@ class ExplorationEnv(gym.Env[Any, Any]):
 
     ``observation="sectors"``, ``Box(0, 1, (38,), float32)``: the same, except that 0–35 are the nearest hits in 36
     sectors of 10 degrees, the first one centred straight ahead, counter-clockwise. A wall's end between two of the five
-    beams cannot hide from it. ``observation="compass"``, ``Box(0, 1, (74,), float32)``: after these, 36–71 say how much
-    of the edge of the known map lies in each sector, near or far, behind walls or not (``feel_frontiers``).
+    beams cannot hide from it. ``observation="compass"``, ``Box(0, 1, (74,), float32)``: after these, 36–71 say to how
+    much of the edge of the known map each sector leads, around walls, the nearest counting most (``feel_frontiers``).
 
     ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
 

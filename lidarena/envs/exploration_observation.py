@@ -58,14 +58,12 @@ class PaperObserver:
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
         """``(worlds, looks + 1 + k)`` float32."""
         last = scaled_entropy(core) if self._uncertain else core.completeness
-        return np.concatenate(
-            [self._look(core) / core.beam.max_range, previous, last[:, None]], axis=1, dtype=np.float32
-        )
+        return np.concatenate([self._look(core), previous, last[:, None]], axis=1, dtype=np.float32)
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
-        """The ranges that are seen [m], (worlds, ranges)."""
+        """What is seen, in [0, 1], (worlds, looks)."""
         seen: NDArray[np.float32] = core.sensors.scans[:, 0, FRONT_BEAMS]
-        return seen
+        return seen / core.beam.max_range
 
     def pick(self, batch: NDArray[np.float32], world: int) -> NDArray[np.float32]:
         """Row ``world``."""
@@ -86,23 +84,18 @@ class SectorObserver(PaperObserver):
     looks = SECTORS
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
-        scans = core.sensors.scans[:, 0]
-        width = scans.shape[1] // SECTORS
-        nearest: NDArray[np.float32] = (
-            np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width).min(axis=2)
-        )
-        return nearest
+        return nearest_hits(core.sensors.scans[:, 0]) / core.beam.max_range
 
 
 class CompassObserver(SectorObserver):
-    """The sectors' nearest hits, and after them how much of the map's edge lies in each, see ``feel_frontiers``."""
+    """The sectors' nearest hits, and after them how much of the map's edge each leads to, see ``feel_frontiers``."""
 
     looks = 2 * SECTORS
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
-        edge = np.empty((core.worlds, SECTORS), np.float32)
-        feel_frontiers(core.maps.occupancy, core.maps.origin, core.estimate, RESOLUTION, edge)
-        return np.concatenate([super()._look(core), edge], axis=1)
+        nearest = nearest_hits(core.sensors.scans[:, 0])
+        edge = feel_frontiers(core.maps.occupancy, core.maps.origin, core.estimate, nearest, RESOLUTION)
+        return np.concatenate([nearest / core.beam.max_range, edge], axis=1)
 
 
 class MapObserver:
@@ -158,6 +151,13 @@ def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> 
         return MapObserver(action_parts, beams)
     flat = {"da_slam": PaperObserver, "sectors": SectorObserver, "compass": CompassObserver}
     return flat[kind](action_parts, uncertain)
+
+
+def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The nearest hit of each sector [m], (worlds, SECTORS), in scans (worlds, beams)."""
+    width = scans.shape[1] // SECTORS
+    around: NDArray[np.float32] = np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width)
+    return around.min(axis=2)
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:

@@ -40,7 +40,7 @@ class ExplorationOptions:
             from which every reset draws one.
         reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
         observation: ``"da_slam"`` (the paper's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
-            five beams), ``"compass"`` (that, and where the edge of the known map lies) or ``"map"`` (a dictionary with
+            five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary with
             an egocentric picture of the map).
         action: ``"discrete"`` (the paper's three) or ``"continuous"``.
         slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.

@@ -1,53 +1,159 @@
-"""Where the edge of the known map lies, as seen from the robot: a lidar of the unknown that looks through walls."""
+"""Which way to the edge of the known map: around walls, as the robot would have to drive."""
 
 import math
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import leaf
+from lidarena.envs.worker_threads import on_threads
+from lidarena.world.kernels import inlined, kernel, leaf, take_next
 
+_POOL = 2
+"""Cells a side that make one square of the search: 0.1 m of a map of 0.05 m."""
 _FADE = 2.0
-"""A cell of the edge counts e times less at this distance [m]."""
-_ENOUGH = 10.0
-"""So many cells right here, half a metre of edge, are as much as can be said."""
+"""A piece of the edge counts e times less that much further away than the nearest [m]."""
+_ENOUGH = 5.0
+"""So many squares, half a metre of edge, are as much as can be said."""
+_MARGIN = 0.15
+"""A square lies in sight that is nearer than its sector's nearest hit by this [m]."""
+_STRAIGHT, _DIAGONAL, _BESIDE_WALL = 2, 3, 3
+"""Lengths of steps, in half squares, and how many times longer they count beside a wall."""
+_BUCKETS = _DIAGONAL * _BESIDE_WALL + 1
+_FAR = 2**30
+_UNKNOWN, _FREE, _NARROW, _WALL = -1, 0, 1, 2
 
 
 @leaf
+def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
+    """Make each square a wall if one of its cells is, else free if one is, else unknown; free beside walls is narrow."""
+    rows, columns = squares.shape
+    for r in range(rows):
+        for c in range(columns):
+            most = _UNKNOWN
+            for y in range(r * _POOL, min((r + 1) * _POOL, occupancy.shape[0])):
+                for x in range(c * _POOL, min((c + 1) * _POOL, occupancy.shape[1])):
+                    most = max(most, occupancy[y, x])
+            squares[r, c] = _WALL if most > 0 else most
+    for r in range(rows):
+        for c in range(columns):
+            if squares[r, c] != _WALL:
+                continue
+            for y in range(max(r - 1, 0), min(r + 2, rows)):
+                for x in range(max(c - 1, 0), min(c + 2, columns)):
+                    if squares[y, x] == _FREE:
+                        squares[y, x] = _NARROW
+
+
+@inlined
+def _sector_in_sight(dx: float, dy: float, ranges: NDArray[np.float32]) -> int:
+    """The sector of a place in the robot's frame, -1 if a wall may hide it."""
+    sectors = ranges.shape[0]
+    sector = int(math.floor(math.atan2(dy, dx) / (2.0 * math.pi) * sectors + 0.5)) % sectors
+    return sector if math.hypot(dx, dy) < max(float(ranges[sector]), 2.0 * _MARGIN) - _MARGIN else -1
+
+
+@kernel
+def _search(
+    squares: NDArray[np.int8],
+    pose: NDArray[np.float64],
+    ranges: NDArray[np.float32],
+    side: float,
+    out: NDArray[np.float32],
+) -> None:
+    """Dijkstra's algorithm with buckets (Dial 1969) from ``pose`` (relative to the map) over free squares."""
+    rows, columns = squares.shape
+    reached = np.full((rows, columns), _FAR, np.int32)
+    via = np.zeros((rows, columns), np.int16)
+    queue = np.empty((_BUCKETS, rows * columns), np.int32)
+    filled = np.zeros(_BUCKETS, np.int64)
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    row = min(max(int(pose[1] / side), 0), rows - 1)
+    column = min(max(int(pose[0] / side), 0), columns - 1)
+    reached[row, column] = 0
+    queue[0, 0], filled[0] = row * columns + column, 1
+    length, waiting, first = 0, 1, -1
+    while waiting > 0:
+        bucket = length % _BUCKETS
+        for k in range(filled[bucket]):
+            r, c = queue[bucket, k] // columns, queue[bucket, k] % columns
+            if reached[r, c] != length:
+                continue  # a shorter way was found since
+            if squares[r, c] == _UNKNOWN and length > 0:
+                first = length if first < 0 else first
+                further = 0.5 * side * (length - first)
+                out[via[r, c]] += math.exp(-further / _FADE) / _ENOUGH
+                continue
+            for y in range(max(r - 1, 0), min(r + 2, rows)):
+                for x in range(max(c - 1, 0), min(c + 2, columns)):
+                    straight = y == r or x == c
+                    if squares[y, x] == _WALL or (squares[y, x] == _UNKNOWN and not straight):
+                        continue
+                    step = _STRAIGHT if straight else _DIAGONAL
+                    new = length + (step * _BESIDE_WALL if squares[y, x] == _NARROW else step)
+                    if new >= reached[y, x]:
+                        continue
+                    reached[y, x] = new
+                    dx, dy = (x + 0.5) * side - pose[0], (y + 0.5) * side - pose[1]
+                    seen = _sector_in_sight(cos * dx + sin * dy, cos * dy - sin * dx, ranges)
+                    via[y, x] = seen if seen >= 0 else via[r, c]
+                    there = new % _BUCKETS
+                    queue[there, filled[there]] = y * columns + x
+                    filled[there] += 1
+                    waiting += 1
+        waiting -= filled[bucket]
+        filled[bucket] = 0
+        length += 1
+
+
+@kernel
+def _feel(
+    occupancy: NDArray[np.int8],
+    origins: NDArray[np.float64],
+    poses: NDArray[np.float64],
+    ranges: NDArray[np.float32],
+    resolution: float,
+    out: NDArray[np.float32],
+    counter: NDArray[np.int64],
+) -> None:
+    rows, columns = occupancy.shape[1:]
+    squares = np.empty(((rows + _POOL - 1) // _POOL, (columns + _POOL - 1) // _POOL), np.int8)
+    while True:
+        w = take_next(counter)
+        if w >= out.shape[0]:
+            break
+        _pool(occupancy[w], squares)
+        pose = poses[w].copy()
+        pose[:2] -= origins[w]
+        out[w] = 0.0
+        _search(squares, pose, ranges[w], _POOL * resolution, out[w])
+        for k in range(out.shape[1]):
+            out[w, k] = min(out[w, k], np.float32(1.0))
+
+
 def feel_frontiers(
     occupancy: NDArray[np.int8],
     origins: NDArray[np.float64],
     poses: NDArray[np.float64],
+    ranges: NDArray[np.float32],
     resolution: float,
-    out: NDArray[np.float32],
-) -> None:
-    """Sum up the frontier cells (unknown, with a free 4-neighbour) of every sector around each pose.
+) -> NDArray[np.float32]:
+    """Say for every sector around each pose how much of the known map's edge one reaches by setting out that way.
 
-    A sector's value is min(1, Σ exp(-d / 2 m) / 10) over its frontier cells at distances d: a speck says next to
-    nothing, half a metre of frontier nearby as much as there is to say.
+    The map is searched in squares of two cells a side, where a step beside a wall counts three times. An unknown square
+    that a way reaches over free ones, d metres further than the nearest such, adds exp(-d / 2 m) / 5 to the sector in
+    which the way leaves the robot's sight; 1 is the most. So the nearest part of the edge is always felt, however far.
 
     Args:
         occupancy: (worlds, rows, columns) -1, 0, 100.
         origins: (worlds, 2) [m].
         poses: (worlds, 3).
+        ranges: (worlds, sectors) nearest hits [m]; the first sector is centred ahead, the next ones lie to the left.
         resolution: Side of a cell [m].
-        out: (worlds, sectors) output; the first sector is centred ahead, the next ones lie to the left.
+
+    Returns:
+        (worlds, sectors) in [0, 1]; all 0 where nothing unknown can be reached.
     """
-    rows, columns = occupancy.shape[1:]
-    sectors = out.shape[1]
-    for w in range(out.shape[0]):
-        out[w] = 0.0
-        x, y = poses[w, 0] - origins[w, 0], poses[w, 1] - origins[w, 1]
-        for r in range(1, rows - 1):
-            for c in range(1, columns - 1):
-                if occupancy[w, r, c] != -1:
-                    continue
-                beside = (occupancy[w, r - 1, c] == 0) | (occupancy[w, r + 1, c] == 0)
-                if not (beside | (occupancy[w, r, c - 1] == 0) | (occupancy[w, r, c + 1] == 0)):
-                    continue
-                dx, dy = (c + 0.5) * resolution - x, (r + 0.5) * resolution - y
-                turn = (math.atan2(dy, dx) - poses[w, 2]) / (2.0 * math.pi) * sectors + 0.5
-                sector = int(turn - math.floor(turn / sectors) * sectors) % sectors
-                out[w, sector] += math.exp(-math.sqrt(dx * dx + dy * dy) / _FADE) / _ENOUGH
-        for k in range(sectors):
-            out[w, k] = min(out[w, k], 1.0)
+    out = np.empty(ranges.shape, np.float32)
+    counter = np.zeros(1, np.int64)
+    on_threads(len(out), lambda _: _feel(occupancy, origins, poses, ranges, resolution, out, counter))
+    return out

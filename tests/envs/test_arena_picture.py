@@ -1,5 +1,6 @@
 import numpy as np
 
+from lidarena.baselines import make
 from lidarena.envs import ArenaEnv
 from lidarena.world.drawing import BLUE, GREEN, MAGENTA, ORANGE, RED
 
@@ -56,3 +57,31 @@ def test_drawing_changes_no_bit_of_the_world() -> None:
         drawn.render()
         one, two = (env.step(np.full(1, 0.05, np.float32)) for env in (plain, drawn))
         assert one[0].tobytes() == two[0].tobytes() and one[1] == two[1]
+
+
+def test_a_policy_shows_its_own_plan_until_the_episode_ends() -> None:
+    env = ArenaEnv(arena="yang", render_mode="rgb_array")
+    env.reset(seed=0)
+    field = env.render()
+    aside = np.array([[5.0, 90.0], [95.0, 90.0]])
+    env.show(aside)
+    own = env.render()
+    assert field is not None and own is not None
+    assert count(own[44:-64], ORANGE) == 0 and count(own[44:-64], BLUE) > 500
+    env.show(aside, before=np.array([[5.0, 80.0], [95.0, 80.0]]))
+    smoothed = env.render()
+    assert smoothed is not None and count(smoothed[44:-64], ORANGE) > 500
+    env.reset(seed=0)
+    assert np.array_equal(env.render(), field)
+
+
+def test_planners_show_what_they_drive() -> None:
+    env = ArenaEnv(arena="yang:u", render_mode="rgb_array")
+    for name, smooths in (("astar", False), ("apf_improved", True), ("apf_improved_lidar", False)):
+        observation, info = env.reset(seed=0)
+        policy = make(name, env)
+        policy.reset(seed=0)
+        policy.act(observation, info)
+        picture = env.render()
+        assert picture is not None and count(picture[44:-64], BLUE) > 100, name
+        assert (count(picture[44:-64], ORANGE) > 0) == smooths, name

@@ -1,60 +1,112 @@
-"""The lidar of the unknown: against a slow definition, and that it turns with the robot."""
+"""The compass of the edge: against a slow search, around corners, in sight, and that it turns with the robot."""
+
+import heapq
+import math
 
 import numpy as np
+import pytest
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration_core import RESOLUTION
 from lidarena.envs.frontier_compass import feel_frontiers
 
 SECTORS = 36
+SIDE = 2 * RESOLUTION
+UNKNOWN, FREE, WALL = -1, 0, 100
 
 
-def felt(grid: NDArray[np.int8], pose: tuple[float, float, float], origin: tuple[float, float]) -> NDArray[np.float32]:
-    out = np.full((1, SECTORS), 9.0, np.float32)
-    feel_frontiers(grid[None], np.array([origin]), np.array([pose]), RESOLUTION, out)
-    return out[0]
+def felt(
+    grid: NDArray[np.int8], pose: tuple[float, float, float], origin: tuple[float, float] = (0.0, 0.0), sight: float = 3.5
+) -> NDArray[np.float32]:
+    ranges = np.full((1, SECTORS), sight, np.float32)
+    return feel_frontiers(grid[None], np.array([origin]), np.array([pose]), ranges, RESOLUTION)[0]
 
 
-def by_definition(
-    grid: NDArray[np.int8], pose: tuple[float, float, float], origin: tuple[float, float]
-) -> NDArray[np.float64]:
-    sums = np.zeros(SECTORS)
-    for row, column in np.argwhere(grid == -1):
-        beside = [(row - 1, column), (row + 1, column), (row, column - 1), (row, column + 1)]
-        inside = 0 < row < grid.shape[0] - 1 and 0 < column < grid.shape[1] - 1
-        if not inside or not any(grid[cell] == 0 for cell in beside):
+def squares_of(grid: NDArray[np.int8]) -> NDArray[np.int64]:
+    return grid.reshape(grid.shape[0] // 2, 2, grid.shape[1] // 2, 2).max(axis=(1, 3)).astype(np.int64)
+
+
+def way_lengths(grid: NDArray[np.int8], start: tuple[int, int]) -> dict[tuple[int, int], int]:
+    """Lengths of the shortest ways to the squares of the edge, in half squares."""
+    squares = squares_of(grid)
+    walls = np.argwhere(squares == WALL)
+    done: dict[tuple[int, int], int] = {}
+    edge: dict[tuple[int, int], int] = {}
+    queue = [(0, start)]
+    while queue:
+        length, here = heapq.heappop(queue)
+        if here in done:
             continue
-        away = np.array(origin) + RESOLUTION * (np.array([column, row]) + 0.5) - pose[:2]
-        bearing = np.degrees(np.arctan2(away[1], away[0]) - pose[2])
-        sums[int(np.round(bearing / 10.0)) % SECTORS] += np.exp(-np.hypot(*away) / 2.0)
-    return np.minimum(sums / 10.0, 1.0)
+        done[here] = length
+        if squares[here] == UNKNOWN and here != start:
+            edge[here] = length
+            continue
+        for there in np.ndindex(squares.shape):
+            straight = abs(there[0] - here[0]) + abs(there[1] - here[1]) == 1
+            diagonal = abs(there[0] - here[0]) == 1 == abs(there[1] - here[1])
+            if not (straight or diagonal) or squares[there] == WALL or (diagonal and squares[there] == UNKNOWN):
+                continue
+            narrow = squares[there] == FREE and bool((np.abs(walls - there).max(axis=1) <= 1).any())
+            heapq.heappush(queue, (length + (2 if straight else 3) * (3 if narrow else 1), there))
+    return edge
 
 
-def a_map(seed: int) -> NDArray[np.int8]:
+@pytest.mark.parametrize("seed", range(4))
+def test_all_that_is_felt_is_what_ways_lead_to(seed: int) -> None:
     rng = np.random.default_rng(seed)
-    return rng.choice(np.array([-1, 0, 100], np.int8), (40, 60), p=[0.1, 0.8, 0.1])
+    cells = rng.choice(np.array([UNKNOWN, FREE, WALL], np.int8), (10, 15), p=[0.06, 0.84, 0.1])
+    cells[5, 7] = FREE
+    grid = cells.repeat(2, axis=0).repeat(2, axis=1)
+    lengths = np.array(sorted(way_lengths(grid, (5, 7)).values()))
+    expected = np.exp(-0.5 * SIDE * (lengths - lengths[0]) / 2.0).sum() / 5.0
+    sums = felt(grid, (-0.5 + 7.5 * SIDE, 0.25 + 5.5 * SIDE, 0.3), (-0.5, 0.25))
+    assert sums.max() < 1.0, "an edge too large for comparing"
+    assert sums.sum() == pytest.approx(expected, rel=1e-5)
 
 
-def test_the_sum_is_its_definition() -> None:
-    for seed in range(5):
-        pose = (1.1 + 0.3 * seed, 0.9, 0.7 * seed - 2.0)
-        expected = by_definition(a_map(seed), pose, (-0.5, 0.25))
-        np.testing.assert_allclose(felt(a_map(seed), pose, (-0.5, 0.25)), expected, atol=1e-5)
+def test_what_is_in_sight_is_felt_where_it_lies() -> None:
+    for bearing in np.linspace(-3.0, 3.0, 25):
+        grid = np.zeros((60, 60), np.int8)
+        row, column = 2 * (np.array([15 + 10 * math.sin(bearing), 15 + 10 * math.cos(bearing)]).astype(int))
+        grid[row : row + 2, column : column + 2] = UNKNOWN
+        to = math.atan2((row + 1) * RESOLUTION - 1.5, (column + 1) * RESOLUTION - 1.5)
+        assert np.flatnonzero(felt(grid, (1.5, 1.5, 0.0))).tolist() == [round(math.degrees(to) / 10) % SECTORS]
 
 
 def test_what_is_known_all_around_or_closed_in_by_walls_is_not_felt() -> None:
     known = np.zeros((30, 30), np.int8)
-    assert not felt(known, (0.7, 0.7, 0.0), (0, 0)).any()
-    known[10:20, 10:20] = 100
-    known[12:18, 12:18] = -1
-    assert not felt(known, (0.2, 0.7, 0.0), (0, 0)).any()
+    assert not felt(known, (0.7, 0.7, 0.0)).any()
+    known[10:20, 10:20] = WALL
+    known[12:18, 12:18] = UNKNOWN
+    assert not felt(known, (0.2, 0.7, 0.0)).any()
 
 
-def test_an_edge_ahead_is_felt_ahead_and_turns_with_the_robot() -> None:
-    grid = np.zeros((41, 80), np.int8)
-    grid[:, 60:] = -1
-    ahead = felt(grid, (1.0, 1.025, 0.0), (0, 0))
-    assert np.flatnonzero(ahead).tolist() == [0, 1, 2, 3, 33, 34, 35] and ahead[:2].min() > 0.05
+def test_an_edge_behind_a_wall_is_felt_where_the_wall_ends() -> None:
+    grid = np.zeros((80, 80), np.int8)
+    grid[:64, 40:42] = WALL  # from y = 0 to y = 3.2 at x = 2
+    grid[:20, 50:] = UNKNOWN  # straight ahead, behind the wall
+    ranges = np.full((1, SECTORS), 3.5, np.float32)
+    ranges[0, [0, 1, 2, 3, 4, 32, 33, 34, 35]] = 1.5  # the wall, as a lidar sees it
+    sums = feel_frontiers(grid[None], np.zeros((1, 2)), np.array([[0.5, 0.5, 0.0]]), ranges, RESOLUTION)[0]
+    assert set(np.flatnonzero(sums)) <= {5, 6, 7} and sums.max() == 1.0  # the end lies at atan2(2.7, 1.5) = 61 degrees
+
+
+def test_the_nearest_edge_is_felt_however_far_and_turns_with_the_robot() -> None:
+    grid = np.zeros((40, 1200), np.int8)
+    grid[:, 1180:] = UNKNOWN  # 58 m away
+    ahead = felt(grid, (1.0, 1.025, 0.0))
+    assert ahead.max() > 0.9 and set(np.flatnonzero(ahead)) <= {34, 35, 0, 1, 2}
     for quarter in range(4):
-        turned = felt(grid, (1.0, 1.025, quarter * np.pi / 2), (0, 0))
+        turned = felt(grid, (1.0, 1.025, quarter * np.pi / 2))
         np.testing.assert_allclose(turned, np.roll(ahead, -9 * quarter), atol=1e-6)
+
+
+def test_worlds_do_not_depend_on_each_other() -> None:
+    rng = np.random.default_rng(5)
+    grids = rng.choice(np.array([UNKNOWN, FREE, WALL], np.int8), (7, 31, 45), p=[0.1, 0.8, 0.1])
+    poses, origins = rng.uniform(0.2, 1.4, (7, 3)), rng.uniform(-0.1, 0.1, (7, 2))
+    ranges = rng.uniform(0.1, 3.5, (7, SECTORS)).astype(np.float32)
+    together = feel_frontiers(grids, origins, poses, ranges, RESOLUTION)
+    for w in range(7):
+        alone = feel_frontiers(grids[w : w + 1], origins[w : w + 1], poses[w : w + 1], ranges[w : w + 1], RESOLUTION)
+        assert alone[0].tobytes() == together[w].tobytes()
