@@ -1,23 +1,19 @@
 """Goal reaching: a robot at constant speed among obstacles, which it sees with a lidar or knows beforehand."""
 
+from collections.abc import Iterable, Sequence
 from typing import Any, ClassVar
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.error import ResetNeeded
-from gymnasium.utils import seeding
-from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from lidarena.envs.arena_episodes import ArenaEpisodes, Info
+from lidarena.envs.arena_episodes import ArenaEpisodes
 from lidarena.envs.arena_options import ArenaOptions
 from lidarena.envs.arena_picture import draw_arena
-from lidarena.envs.exploration import masked
-from lidarena.envs.exploration_episodes import of_world
-from lidarena.envs.generator_state import generator_from_words, generator_words
+from lidarena.envs.batch_infos import Info, of_world
+from lidarena.envs.batched_worlds import BatchedWorlds, Outcome, whole_number_of_worlds
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import ConfigError
 
 
 class ArenaEnv(gym.Env[Any, Any]):
@@ -175,97 +171,44 @@ class ArenaEnv(gym.Env[Any, Any]):
         return draw_arena(self._episodes.core, self._episodes.recorder, 0)
 
 
-class BatchedArena(VectorEnv[Any, Any, Any]):
+class BatchedArena(BatchedWorlds):
     """``num_envs`` arenas in one step; world ``i`` is ``ArenaEnv`` with seed ``seed + i`` to the bit.
 
-    A world that ends begins its next episode in the same step (``AutoresetMode.SAME_STEP``): ``infos["final_obs"]`` and
-    ``infos["final_info"]`` hold the last observation and info of the old one. Spaces, rewards and keywords:
-    ``ArenaEnv``.
+    See ``BatchedWorlds``; spaces, rewards and keywords: ``ArenaEnv``.
 
     Args:
         num_envs: Number of worlds.
         keywords: Those of ``ArenaOptions``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
-        "render_modes": ["rgb_array"],
-        "render_fps": 10,
-        "autoreset_mode": AutoresetMode.SAME_STEP,
-    }
+    metadata: ClassVar[dict[str, Any]] = BatchedWorlds.metadata | {"render_fps": 10}  # type: ignore[misc]
     family = "arena"
 
     def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
         """Make the worlds; raises like ``ArenaEnv``."""
-        if not isinstance(num_envs, int) or num_envs < 1:
-            raise ConfigError(f"num_envs = {num_envs!r} must be a whole number of at least 1")
+        worlds = whole_number_of_worlds(num_envs)
         options = ArenaOptions.checked(keywords)
-        self.num_envs = num_envs
-        self.render_mode = options.render_mode
-        self._episodes = ArenaEpisodes(num_envs, options)
-        self.single_observation_space = self._episodes.single_observation_space
-        self.single_action_space = self._episodes.single_action_space
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
-        self._generators: list[np.random.Generator] = []
-        self._everyone = np.ones(num_envs, np.bool_)
+        self._episodes = ArenaEpisodes(worlds, options)
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(worlds, worlds, self._episodes, spaces, options.render_mode)
 
     @property
     def step_length(self) -> float:
         """What a robot drives in a decision period [m]."""
         return self._episodes.core.step_length
 
-    def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Any, Info]:
-        """Begin an episode in every world; a single seed ``s`` gives world ``i`` the seed ``s + i``."""
-        seeds = (
-            [None if seed is None else seed + i for i in range(self.num_envs)] if not isinstance(seed, list) else seed
-        )
-        if len(seeds) != self.num_envs:
-            raise ConfigError(f"{len(seeds)} seeds were given for {self.num_envs} worlds; one for each is needed")
-        if not self._generators:
-            self._generators = [seeding.np_random(one)[0] for one in seeds]
-        for world, one in enumerate(seeds):
-            if one is not None:
-                self._generators[world] = seeding.np_random(one)[0]
-        self._episodes.reset(range(self.num_envs), self._generators, seeds)
-        return self._episodes.observe(), masked(self._episodes.infos(), self._everyone.copy())
+    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
+        self._episodes.reset(worlds, self._generators, seeds)
 
-    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], Info]:
-        """Act in every world for one decision period; raises like ``ArenaEnv.step``."""
-        if not self._generators:
-            raise ResetNeeded("step() needs running episodes; call reset() first")
-        rewards, terminated, truncated = self._episodes.step(actions)
-        observations = self._episodes.observe()
-        done = terminated | truncated
-        if not done.any():
-            return observations, rewards, terminated, truncated, masked(self._episodes.infos(), self._everyone.copy())
-        last = self._episodes.infos()
-        ended = np.flatnonzero(done).tolist()
-        final_obs = np.full(self.num_envs, None, dtype=object)
-        for world in ended:
-            final_obs[world] = observations[world].copy()
-        self._episodes.reset(ended, self._generators)
-        observations[done] = self._episodes.observe()[done]
-        infos = masked(self._episodes.infos(), self._everyone.copy())
-        infos |= {"final_obs": final_obs, "_final_obs": done.copy()}
-        infos |= {"final_info": masked(last, done), "_final_info": done.copy()}
-        return observations, rewards, terminated, truncated, infos
+    def _advance(self, actions: Any) -> Outcome:
+        return self._episodes.step(actions)
 
-    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """One picture a world; None without ``render_mode``."""
+    def _observe(self) -> Any:
+        return self._episodes.observe()
+
+    def _infos(self) -> Info:
+        return self._episodes.infos()
+
+    def _picture(self, world: int) -> NDArray[np.uint8] | None:
         recorder = self._episodes.recorder
-        if recorder is None:
-            return None
-        return tuple(draw_arena(self._episodes.core, recorder, world) for world in range(self.num_envs))
-
-    def get_state(self) -> dict[str, NDArray[Any]]:
-        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
-        arrays = {name: array.copy() for name, array in self._episodes.arrays().items()}
-        arrays["generators"] = np.stack([generator_words(rng) for rng in self._generators])
-        return arrays
-
-    def set_state(self, state: dict[str, NDArray[Any]]) -> None:
-        """Continue where ``get_state`` of a batch with the same keywords and size was called."""
-        self._generators = [generator_from_words(words) for words in state["generators"]]
-        self._episodes.load_arrays(state)
+        return None if recorder is None else draw_arena(self._episodes.core, recorder, world)

@@ -12,12 +12,12 @@ from lidarena.envs.arena_core import ArenaCore
 from lidarena.envs.arena_kernels import observe
 from lidarena.envs.arena_options import REWARD_TERMS, ArenaOptions
 from lidarena.envs.arena_picture import PathRecorder
+from lidarena.envs.batch_infos import Info
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.heading_actions import heading_space, turns_of
 
 _FAR = 1.5
 """Distances to the goal are observed over this many sides of the room to which everything is to scale."""
-Info = dict[str, Any]
 
 
 class ArenaEpisodes:

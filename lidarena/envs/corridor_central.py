@@ -1,24 +1,20 @@
 """The multi-robot world for one controller of the whole team, single and in batches."""
 
-from typing import Any, ClassVar
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.error import ResetNeeded
-from gymnasium.utils import seeding
-from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from lidarena.envs.corridor_episodes import CorridorEpisodes, Info
+from lidarena.envs.batch_infos import Info, of_world
+from lidarena.envs.batched_worlds import BatchedWorlds, Outcome, whole_number_of_worlds
+from lidarena.envs.corridor_episodes import CorridorEpisodes
 from lidarena.envs.corridor_options import CorridorOptions
 from lidarena.envs.corridor_picture import TeamSketch
 from lidarena.envs.corridor_scene import draw_world
-from lidarena.envs.exploration import masked
-from lidarena.envs.exploration_episodes import of_world
-from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import ConfigError
 
 
 def team_spaces(episodes: CorridorEpisodes) -> tuple[gym.spaces.Box, gym.Space[Any]]:
@@ -167,92 +163,38 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
         return draw_world(self.episodes, 0)
 
 
-class BatchedCorridor(VectorEnv[Any, Any, Any]):
+class BatchedCorridor(BatchedWorlds):
     """``num_envs`` worlds of a team in one step; world ``i`` is ``CorridorCentralEnv`` with seed ``seed + i``.
 
-    A world that ends begins its next episode in the same step (``AutoresetMode.SAME_STEP``): ``infos["final_obs"]`` and
-    ``infos["final_info"]`` hold the last observation and info of the old one. Spaces, rewards and keywords:
-    ``CorridorCentralEnv``.
+    See ``BatchedWorlds``; spaces, rewards and keywords: ``CorridorCentralEnv``.
 
     Args:
         num_envs: Number of worlds.
         **keywords: See ``CorridorOptions``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
-        "render_modes": ["rgb_array"],
-        "render_fps": 5,
-        "autoreset_mode": AutoresetMode.SAME_STEP,
-    }
     family = "corridor"
 
     def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
         """Make the worlds; raises like ``CorridorCentralEnv``."""
-        if not isinstance(num_envs, int) or num_envs < 1:
-            raise ConfigError(f"num_envs = {num_envs!r} must be a whole number of at least 1")
+        worlds = whole_number_of_worlds(num_envs)
         options = CorridorOptions.checked(keywords)
-        self.num_envs = num_envs
-        self.render_mode = options.render_mode
-        self.episodes = CorridorEpisodes(num_envs, options)
-        self.single_observation_space, self.single_action_space = team_spaces(self.episodes)
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
-        self._generators: list[np.random.Generator] = []
+        self.episodes = CorridorEpisodes(worlds, options)
+        super().__init__(worlds, worlds, self.episodes, team_spaces(self.episodes), options.render_mode)
 
-    def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Any, Info]:
-        """Begin an episode in every world; a single seed ``s`` gives world ``i`` the seed ``s + i``."""
-        self._generators = seeded_generators(self._generators, seed, self.num_envs)
-        self.episodes.reset(range(self.num_envs), self._generators)
-        return self.episodes.observe(), masked(team_infos(self.episodes), np.ones(self.num_envs, np.bool_))
+    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
+        self.episodes.reset(worlds, self._generators)
 
-    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], Info]:
-        """Act in every world for one decision period; raises like ``CorridorCentralEnv.step``."""
-        if not self._generators:
-            raise ResetNeeded("step() needs running episodes; call reset() first")
-        by_robot, _, _ = self.episodes.step(actions)
-        rewards: NDArray[np.float64] = by_robot.sum(axis=1)
-        terminated, over = np.asarray(self.episodes.finished.all(axis=1)), self.episodes.over
-        observations, everyone = self.episodes.observe(), np.ones(self.num_envs, np.bool_)
-        infos: Info = {}
-        if over.any():
-            infos = {"final_obs": np.full(self.num_envs, None, dtype=object), "_final_obs": over}
-            infos |= {"final_info": masked(team_infos(self.episodes), over), "_final_info": over}
-            for world in np.flatnonzero(over):
-                infos["final_obs"][world] = observations[world].copy()
-            self.episodes.reset(np.flatnonzero(over).tolist(), self._generators)
-            observations[over] = self.episodes.observe()[over]
-        infos = masked(team_infos(self.episodes), everyone) | infos
-        return observations, rewards, terminated, over & ~terminated, infos
+    def _advance(self, actions: Any) -> Outcome:
+        rewards, _, _ = self.episodes.step(actions)
+        terminated = np.asarray(self.episodes.finished.all(axis=1))
+        return rewards.sum(axis=1), terminated, self.episodes.over & ~terminated
 
-    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """One picture a world; None without ``render_mode``."""
-        if self.render_mode is None:
-            return None
-        pictures = [draw_world(self.episodes, world) for world in range(self.num_envs)]
-        return tuple(picture for picture in pictures if picture is not None)
+    def _observe(self) -> Any:
+        return self.episodes.observe()
 
-    def get_state(self) -> dict[str, NDArray[Any]]:
-        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
-        arrays = {name: array.copy() for name, array in self.episodes.arrays().items()}
-        return arrays | {"generators": np.stack([generator_words(rng) for rng in self._generators])}
+    def _infos(self) -> Info:
+        return team_infos(self.episodes)
 
-    def set_state(self, state: dict[str, NDArray[Any]]) -> None:
-        """Continue where ``get_state`` of a batch with the same keywords and size was called."""
-        self._generators = [generator_from_words(words) for words in state["generators"]]
-        self.episodes.load_arrays(state)
-
-
-def seeded_generators(
-    before: list[np.random.Generator], seed: int | list[int | None] | None, worlds: int
-) -> list[np.random.Generator]:
-    """The worlds' generators: fresh ones where a seed is given, or where there were none.
-
-    Raises:
-        ConfigError: The number of seeds is not that of the worlds.
-    """
-    seeds = [None if seed is None else seed + i for i in range(worlds)] if not isinstance(seed, list) else seed
-    if len(seeds) != worlds:
-        raise ConfigError(f"{len(seeds)} seeds were given for {worlds} worlds; one for each is needed")
-    return [before[world] if before and one is None else seeding.np_random(one)[0] for world, one in enumerate(seeds)]
+    def _picture(self, world: int) -> NDArray[np.uint8] | None:
+        return draw_world(self.episodes, world)

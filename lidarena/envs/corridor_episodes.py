@@ -8,6 +8,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.envs.batch_infos import Info
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.corridor_core import CorridorCore
 from lidarena.envs.corridor_kernels import write_observations
@@ -15,7 +16,6 @@ from lidarena.envs.corridor_options import CorridorOptions
 from lidarena.envs.corridor_picture import TeamSketch, TrailRecorder
 from lidarena.envs.team_actions import TOP_SPEED, TOP_TURN_RATE, action_space, commands_of
 
-Info = dict[str, Any]
 TERMS = ("progress", "arrival", "collision", "time", "closeness", "turning")
 _EXTRA = 8
 """Numbers of an observation besides the beams."""

@@ -15,11 +15,11 @@ from numpy.typing import NDArray
 from pettingzoo import AECEnv, ParallelEnv
 from pettingzoo.utils import parallel_to_aec, wrappers
 
-from lidarena.envs.corridor_episodes import CorridorEpisodes, Info
+from lidarena.envs.batch_infos import Info, of_world
+from lidarena.envs.corridor_episodes import CorridorEpisodes
 from lidarena.envs.corridor_options import CorridorOptions
 from lidarena.envs.corridor_picture import TeamSketch
 from lidarena.envs.corridor_scene import close_window, draw_world
-from lidarena.envs.exploration_episodes import of_world
 from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.refusals import ActionError, suggest

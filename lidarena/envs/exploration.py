@@ -1,21 +1,19 @@
 """Active SLAM: a robot with a lidar explores an unknown world, its map and pose coming out of a particle filter."""
 
-from typing import Any, ClassVar
+from collections.abc import Iterable, Sequence
+from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from gymnasium.error import ResetNeeded
-from gymnasium.utils import seeding
-from gymnasium.vector import AutoresetMode, VectorEnv
-from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from lidarena.envs.exploration_episodes import ExplorationEpisodes, Info, of_world
+from lidarena.envs.batch_infos import Info, of_world, row_of
+from lidarena.envs.batched_worlds import BatchedWorlds, Outcome, whole_number_of_worlds
+from lidarena.envs.exploration_episodes import ExplorationEpisodes
 from lidarena.envs.exploration_options import ExplorationOptions
 from lidarena.envs.exploration_picture import draw_exploration
-from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import ConfigError
 
 
 class ExplorationEnv(gym.Env[Any, Any]):
@@ -118,7 +116,7 @@ class ExplorationEnv(gym.Env[Any, Any]):
         super().reset(seed=seed)
         self._episodes.reset([0], [self.np_random])
         self._running = True
-        return self._episodes.observer.pick(self._episodes.observe(), 0), self._info()
+        return row_of(self._episodes.observe(), 0), self._info()
 
     def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
         """Act for one decision period.
@@ -133,7 +131,7 @@ class ExplorationEnv(gym.Env[Any, Any]):
             )
         rewards, terminated, truncated = self._episodes.step([action])
         self._running = not (terminated[0] or truncated[0])
-        observation = self._episodes.observer.pick(self._episodes.observe(), 0)
+        observation = row_of(self._episodes.observe(), 0)
         return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info()
 
     def _info(self) -> Info:
@@ -163,106 +161,41 @@ class ExplorationEnv(gym.Env[Any, Any]):
         return draw_exploration(self._episodes.core, self._episodes.recorder, 0)
 
 
-class BatchedExploration(VectorEnv[Any, Any, Any]):
+class BatchedExploration(BatchedWorlds):
     """``num_envs`` exploration worlds in one step; world ``i`` is ``ExplorationEnv`` with seed ``seed + i`` to the bit.
 
-    A world that ends begins its next episode in the same step (``AutoresetMode.SAME_STEP``): ``infos["final_obs"]`` and
-    ``infos["final_info"]`` hold the last observation and info of the old one. Spaces, rewards and keywords:
-    ``ExplorationEnv``.
+    See ``BatchedWorlds``; spaces, rewards and keywords: ``ExplorationEnv``.
 
     Args:
         num_envs: Number of worlds.
         keywords: Those of ``ExplorationOptions``.
     """
 
-    metadata: ClassVar[dict[str, Any]] = {  # type: ignore[misc]
-        "render_modes": ["rgb_array"],
-        "render_fps": 5,
-        "autoreset_mode": AutoresetMode.SAME_STEP,
-    }
-
     def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
         """Make the worlds; raises like ``ExplorationEnv``."""
-        if not isinstance(num_envs, int) or num_envs < 1:
-            raise ConfigError(f"num_envs = {num_envs!r} must be a whole number of at least 1")
+        worlds = whole_number_of_worlds(num_envs)
         options = ExplorationOptions.checked(keywords)
-        self.num_envs = num_envs
-        self.render_mode = options.render_mode
-        self._episodes = ExplorationEpisodes(num_envs, options)
-        self.single_observation_space = self._episodes.single_observation_space
-        self.single_action_space = self._episodes.single_action_space
-        self.observation_space = batch_space(self.single_observation_space, num_envs)
-        self.action_space = batch_space(self.single_action_space, num_envs)
-        self._generators: list[np.random.Generator] = []
+        self._episodes = ExplorationEpisodes(worlds, options)
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(worlds, worlds, self._episodes, spaces, options.render_mode)
 
-    def reset(
-        self, *, seed: int | list[int | None] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[Any, Info]:
-        """Begin an episode in every world; a single seed ``s`` gives world ``i`` the seed ``s + i``."""
-        seeds = (
-            [None if seed is None else seed + i for i in range(self.num_envs)] if not isinstance(seed, list) else seed
-        )
-        if len(seeds) != self.num_envs:
-            raise ConfigError(f"{len(seeds)} seeds were given for {self.num_envs} worlds; one for each is needed")
-        if not self._generators:
-            self._generators = [seeding.np_random(one)[0] for one in seeds]
-        for world, one in enumerate(seeds):
-            if one is not None:
-                self._generators[world] = seeding.np_random(one)[0]
-        everyone = np.ones(self.num_envs, np.bool_)
-        self._episodes.reset(range(self.num_envs), self._generators)
-        return self._episodes.observe(), masked(self._episodes.infos(), everyone)
+    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
+        self._episodes.reset(worlds, self._generators)
 
-    def step(self, actions: Any) -> tuple[Any, NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_], Info]:
-        """Act in every world for one decision period; raises like ``ExplorationEnv.step``."""
-        if not self._generators:
-            raise ResetNeeded("step() needs running episodes; call reset() first")
-        rewards, terminated, truncated = self._episodes.step(actions)
-        observations = self._episodes.observe()
-        done = terminated | truncated
-        if not done.any():
-            return observations, rewards, terminated, truncated, masked(self._episodes.infos(), ~done | done)
+    def _advance(self, actions: Any) -> Outcome:
+        return self._episodes.step(actions)
+
+    def _observe(self) -> Any:
+        return self._episodes.observe()
+
+    def _infos(self) -> Info:
+        return self._episodes.infos()
+
+    def _last_infos(self) -> Info:
         last = self._episodes.infos()
-        last.pop("map")  # a view on maps that are about to be forgotten
-        final_obs = np.full(self.num_envs, None, dtype=object)
-        for world in np.flatnonzero(done):
-            final_obs[world] = self._copied(observations, int(world))
-        self._episodes.reset(np.flatnonzero(done).tolist(), self._generators)
-        fresh = self._episodes.observe()
-        for world in np.flatnonzero(done):
-            self._episodes.observer.put(observations, int(world), fresh)
-        infos = masked(self._episodes.infos(), np.ones_like(done))
-        infos |= {"final_obs": final_obs, "_final_obs": done.copy()}
-        infos |= {"final_info": masked(last, done), "_final_info": done.copy()}
-        return observations, rewards, terminated, truncated, infos
+        del last["map"]  # a view on maps that are about to be forgotten
+        return last
 
-    def _copied(self, observations: Any, world: int) -> Any:
-        one = self._episodes.observer.pick(observations, world)
-        return {name: array.copy() for name, array in one.items()} if isinstance(one, dict) else one.copy()
-
-    def render(self) -> tuple[NDArray[np.uint8], ...] | None:
-        """One picture a world; None without ``render_mode``."""
+    def _picture(self, world: int) -> NDArray[np.uint8] | None:
         recorder = self._episodes.recorder
-        if recorder is None:
-            return None
-        return tuple(draw_exploration(self._episodes.core, recorder, world) for world in range(self.num_envs))
-
-    def get_state(self) -> dict[str, NDArray[Any]]:
-        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
-        arrays = {name: array.copy() for name, array in self._episodes.arrays().items()}
-        arrays["generators"] = np.stack([generator_words(rng) for rng in self._generators])
-        return arrays
-
-    def set_state(self, state: dict[str, NDArray[Any]]) -> None:
-        """Continue where ``get_state`` of a batch with the same keywords and size was called."""
-        self._generators = [generator_from_words(words) for words in state["generators"]]
-        self._episodes.load_arrays(state)
-
-
-def masked(info: Info, mask: NDArray[np.bool_]) -> Info:
-    """Gymnasium's form of a batch's infos: beside every array one that says for which worlds it holds."""
-    out: Info = {}
-    for name, value in info.items():
-        out[name] = masked(value, mask) if isinstance(value, dict) else value
-        out[f"_{name}"] = mask
-    return out
+        return None if recorder is None else draw_exploration(self._episodes.core, recorder, world)

@@ -9,6 +9,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.envs.batch_infos import Info
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.drive_actions import action_space, commands_of
 from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
@@ -20,7 +21,6 @@ CRASH_REWARD = -100.0
 """The paper's r_crashed."""
 _GAIN = 0.001
 """Share of the map that counts as a gain where patience is limited."""
-Info = dict[str, Any]
 
 
 class ExplorationEpisodes:
@@ -159,15 +159,3 @@ class ExplorationEpisodes:
         self._completeness = saved["completeness"].copy()
         self._gained[:], self._gained_at[:] = saved["gained"], saved["gained_at"]
         self.core.load_arrays(saved)
-
-
-def of_world(info: Info, world: int) -> Info:
-    """One world's info out of a batch's; scalars become Python numbers."""
-    single: Info = {}
-    for name, value in info.items():
-        if isinstance(value, dict):
-            single[name] = of_world(value, world)
-        else:
-            item = value[world]
-            single[name] = item.item() if item.ndim == 0 else item
-    return single

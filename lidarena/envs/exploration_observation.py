@@ -31,12 +31,6 @@ class Observer(Protocol):
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> Any:
         """Fresh observations of all worlds, given what they did last as numbers in [0, 1] ``(worlds, k)``."""
 
-    def pick(self, batch: Any, world: int) -> Any:
-        """One world's observation out of a batch."""
-
-    def put(self, batch: Any, world: int, source: Any) -> None:
-        """Overwrite one world's observation in ``batch`` by that in ``source``, another batch."""
-
 
 class PaperObserver:
     """The paper's state s_t = [O_t, a_(t-1), r_(t-1)] (eq. 4).
@@ -64,15 +58,6 @@ class PaperObserver:
         """What is seen, in [0, 1], (worlds, looks)."""
         seen: NDArray[np.float32] = core.sensors.scans[:, 0, FRONT_BEAMS]
         return seen / core.beam.max_range
-
-    def pick(self, batch: NDArray[np.float32], world: int) -> NDArray[np.float32]:
-        """Row ``world``."""
-        row: NDArray[np.float32] = batch[world]
-        return row
-
-    def put(self, batch: NDArray[np.float32], world: int, source: NDArray[np.float32]) -> None:
-        """Overwrite row ``world``."""
-        batch[world] = source[world]
 
 
 class SectorObserver(PaperObserver):
@@ -135,15 +120,6 @@ class MapObserver:
             "state": np.concatenate([previous, last], axis=1).astype(np.float32),
         }
 
-    def pick(self, batch: dict[str, NDArray[Any]], world: int) -> dict[str, NDArray[Any]]:
-        """Entry ``world`` of every array."""
-        return {name: array[world] for name, array in batch.items()}
-
-    def put(self, batch: dict[str, NDArray[Any]], world: int, source: dict[str, NDArray[Any]]) -> None:
-        """Overwrite entry ``world`` of every array."""
-        for name, array in batch.items():
-            array[world] = source[name][world]
-
 
 def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> Observer:
     """Make what the keyword ``observation`` names."""
@@ -156,8 +132,9 @@ def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> 
 def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
     """The nearest hit of each sector [m], (worlds, SECTORS), in scans (worlds, beams)."""
     width = scans.shape[1] // SECTORS
-    around: NDArray[np.float32] = np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width)
-    return around.min(axis=2)
+    around = np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width)
+    nearest: NDArray[np.float32] = around.min(axis=2)
+    return nearest
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:

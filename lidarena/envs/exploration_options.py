@@ -40,8 +40,8 @@ class ExplorationOptions:
             from which every reset draws one.
         reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
         observation: ``"da_slam"`` (the paper's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
-            five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary with
-            an egocentric picture of the map).
+            five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary
+            with an egocentric picture of the map).
         action: ``"discrete"`` (the paper's three) or ``"continuous"``.
         slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.
         particles: Of the filter.

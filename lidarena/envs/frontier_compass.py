@@ -8,8 +8,6 @@ from numpy.typing import NDArray
 from lidarena.envs.worker_threads import on_threads
 from lidarena.world.kernels import inlined, kernel, leaf, take_next
 
-_POOL = 2
-"""Cells a side that make one square of the search: 0.1 m of a map of 0.05 m."""
 _FADE = 2.0
 """A piece of the edge counts e times less that much further away than the nearest [m]."""
 _ENOUGH = 5.0
@@ -25,14 +23,14 @@ _UNKNOWN, _FREE, _NARROW, _WALL = -1, 0, 1, 2
 
 @leaf
 def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
-    """Make each square a wall if one of its cells is, else free if one is, else unknown; free beside walls is narrow."""
+    """Make 2 × 2 cells a square: a wall if one is, else free if one is, else unknown; free beside a wall is narrow."""
     rows, columns = squares.shape
     for r in range(rows):
         for c in range(columns):
-            most = _UNKNOWN
-            for y in range(r * _POOL, min((r + 1) * _POOL, occupancy.shape[0])):
-                for x in range(c * _POOL, min((c + 1) * _POOL, occupancy.shape[1])):
-                    most = max(most, occupancy[y, x])
+            y, x = 2 * r, 2 * c
+            lower = max(occupancy[y, x], occupancy[y, x + 1])
+            upper = max(occupancy[y + 1, x], occupancy[y + 1, x + 1])
+            most = max(lower, upper)
             squares[r, c] = _WALL if most > 0 else most
     for r in range(rows):
         for c in range(columns):
@@ -48,7 +46,7 @@ def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
 def _sector_in_sight(dx: float, dy: float, ranges: NDArray[np.float32]) -> int:
     """The sector of a place in the robot's frame, -1 if a wall may hide it."""
     sectors = ranges.shape[0]
-    sector = int(math.floor(math.atan2(dy, dx) / (2.0 * math.pi) * sectors + 0.5)) % sectors
+    sector = math.floor(math.atan2(dy, dx) / (2.0 * math.pi) * sectors + 0.5) % sectors
     return sector if math.hypot(dx, dy) < max(float(ranges[sector]), 2.0 * _MARGIN) - _MARGIN else -1
 
 
@@ -63,7 +61,7 @@ def _search(
     """Dijkstra's algorithm with buckets (Dial 1969) from ``pose`` (relative to the map) over free squares."""
     rows, columns = squares.shape
     reached = np.full((rows, columns), _FAR, np.int32)
-    via = np.zeros((rows, columns), np.int16)
+    via = np.zeros((rows, columns), np.int16)  # the sector of the way's last square in sight; its complement after that
     queue = np.empty((_BUCKETS, rows * columns), np.int32)
     filled = np.zeros(_BUCKETS, np.int64)
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
@@ -78,10 +76,15 @@ def _search(
             r, c = queue[bucket, k] // columns, queue[bucket, k] % columns
             if reached[r, c] != length:
                 continue  # a shorter way was found since
+            if via[r, c] >= 0:
+                dx, dy = (c + 0.5) * side - pose[0], (r + 0.5) * side - pose[1]
+                seen = _sector_in_sight(cos * dx + sin * dy, cos * dy - sin * dx, ranges)
+                via[r, c] = seen if seen >= 0 else ~via[r, c]
             if squares[r, c] == _UNKNOWN and length > 0:
                 first = length if first < 0 else first
                 further = 0.5 * side * (length - first)
-                out[via[r, c]] += math.exp(-further / _FADE) / _ENOUGH
+                sector = via[r, c] if via[r, c] >= 0 else ~via[r, c]
+                out[sector] += math.exp(-further / _FADE) / _ENOUGH
                 continue
             for y in range(max(r - 1, 0), min(r + 2, rows)):
                 for x in range(max(c - 1, 0), min(c + 2, columns)):
@@ -92,10 +95,7 @@ def _search(
                     new = length + (step * _BESIDE_WALL if squares[y, x] == _NARROW else step)
                     if new >= reached[y, x]:
                         continue
-                    reached[y, x] = new
-                    dx, dy = (x + 0.5) * side - pose[0], (y + 0.5) * side - pose[1]
-                    seen = _sector_in_sight(cos * dx + sin * dy, cos * dy - sin * dx, ranges)
-                    via[y, x] = seen if seen >= 0 else via[r, c]
+                    reached[y, x], via[y, x] = new, via[r, c]
                     there = new % _BUCKETS
                     queue[there, filled[there]] = y * columns + x
                     filled[there] += 1
@@ -116,7 +116,7 @@ def _feel(
     counter: NDArray[np.int64],
 ) -> None:
     rows, columns = occupancy.shape[1:]
-    squares = np.empty(((rows + _POOL - 1) // _POOL, (columns + _POOL - 1) // _POOL), np.int8)
+    squares = np.empty((rows // 2, columns // 2), np.int8)
     while True:
         w = take_next(counter)
         if w >= out.shape[0]:
@@ -125,7 +125,7 @@ def _feel(
         pose = poses[w].copy()
         pose[:2] -= origins[w]
         out[w] = 0.0
-        _search(squares, pose, ranges[w], _POOL * resolution, out[w])
+        _search(squares, pose, ranges[w], 2.0 * resolution, out[w])
         for k in range(out.shape[1]):
             out[w, k] = min(out[w, k], np.float32(1.0))
 
@@ -139,9 +139,10 @@ def feel_frontiers(
 ) -> NDArray[np.float32]:
     """Say for every sector around each pose how much of the known map's edge one reaches by setting out that way.
 
-    The map is searched in squares of two cells a side, where a step beside a wall counts three times. An unknown square
-    that a way reaches over free ones, d metres further than the nearest such, adds exp(-d / 2 m) / 5 to the sector in
-    which the way leaves the robot's sight; 1 is the most. So the nearest part of the edge is always felt, however far.
+    The map is searched in squares of two cells a side (an odd last row or column is left out), where a step beside a
+    wall counts three times. An unknown square that a way reaches over free ones, d metres further than the nearest
+    such, adds exp(-d / 2 m) / 5 to the sector in which the way leaves the robot's sight; 1 is the most. So the nearest
+    part of the edge is always felt, however far.
 
     Args:
         occupancy: (worlds, rows, columns) -1, 0, 100.

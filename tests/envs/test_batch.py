@@ -9,6 +9,7 @@ from numba import config
 
 import lidarena  # noqa: F401
 from lidarena.envs import BatchedExploration, set_num_threads
+from lidarena.envs.batch_infos import row_of
 from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.refusals import ConfigError
 
@@ -53,9 +54,8 @@ def world_of(infos: dict[str, Any], k: int) -> dict[str, Any]:
 
 def together(count: int, keywords: dict[str, Any]) -> list[list[bytes]]:
     batch = gym.make_vec("lidarena/Env1-v0", count, "vector_entry_point", max_episode_steps=20, **keywords)
-    pick = batch._episodes.observer.pick  # type: ignore[attr-defined]
     observations, infos = batch.reset(seed=0)
-    records = [[raw(pick(observations, k)) + raw(world_of(infos, k))] for k in range(count)]
+    records = [[raw(row_of(observations, k)) + raw(world_of(infos, k))] for k in range(count)]
     discrete = keywords.get("action") != "continuous"
     table = np.stack([actions_for(k, discrete) for k in range(count)], axis=1)
     for actions in table:
@@ -65,7 +65,7 @@ def together(count: int, keywords: dict[str, Any]) -> list[list[bytes]]:
             if terminated[k] or truncated[k]:
                 ended = raw(infos["final_obs"][k]) + raw(world_of(infos["final_info"], k))
             end = raw([rewards[k], terminated[k], truncated[k]])
-            records[k].append(raw(pick(observations, k)) + raw(world_of(infos, k)) + ended + end)
+            records[k].append(raw(row_of(observations, k)) + raw(world_of(infos, k)) + ended + end)
     return records
 
 

@@ -16,9 +16,11 @@ UNKNOWN, FREE, WALL = -1, 0, 100
 
 
 def felt(
-    grid: NDArray[np.int8], pose: tuple[float, float, float], origin: tuple[float, float] = (0.0, 0.0), sight: float = 3.5
+    grid: NDArray[np.int8],
+    pose: tuple[float, float, float],
+    origin: tuple[float, float] = (0.0, 0.0),
 ) -> NDArray[np.float32]:
-    ranges = np.full((1, SECTORS), sight, np.float32)
+    ranges = np.full((1, SECTORS), 3.5, np.float32)
     return feel_frontiers(grid[None], np.array([origin]), np.array([pose]), ranges, RESOLUTION)[0]
 
 
