@@ -13,17 +13,19 @@ _FADE = 2.0
 _ENOUGH = 5.0
 """So many squares, half a metre of edge, are as much as can be said."""
 _MARGIN = 0.15
-"""A square lies in sight that is nearer than its sector's nearest hit by this [m]."""
-_STRAIGHT, _DIAGONAL, _BESIDE_WALL = 2, 3, 3
-"""Lengths of steps, in half squares, and how many times longer they count beside a wall."""
-_BUCKETS = _DIAGONAL * _BESIDE_WALL + 1
+"""A square lies in sight that is nearer, by this, than the nearest hit in its sector and the two beside it [m]."""
+_NEAR = 2
+"""A square is narrow within so many squares of a wall."""
+_STRAIGHT, _DIAGONAL, _WHERE_NARROW = 2, 3, 3
+"""Lengths of steps, in half squares, and how many times longer they count where it is narrow."""
+_BUCKETS = _DIAGONAL * _WHERE_NARROW + 1
 _FAR = 2**30
 _UNKNOWN, _FREE, _NARROW, _WALL = -1, 0, 1, 2
 
 
 @leaf
 def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
-    """Make 2 × 2 cells a square: a wall if one is, else free if one is, else unknown; free beside a wall is narrow."""
+    """Make 2 × 2 cells a square: a wall if one is, else free if one is, else unknown; free near a wall is narrow."""
     rows, columns = squares.shape
     for r in range(rows):
         for c in range(columns):
@@ -36,8 +38,8 @@ def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
         for c in range(columns):
             if squares[r, c] != _WALL:
                 continue
-            for y in range(max(r - 1, 0), min(r + 2, rows)):
-                for x in range(max(c - 1, 0), min(c + 2, columns)):
+            for y in range(max(r - _NEAR, 0), min(r + _NEAR + 1, rows)):
+                for x in range(max(c - _NEAR, 0), min(c + _NEAR + 1, columns)):
                     if squares[y, x] == _FREE:
                         squares[y, x] = _NARROW
 
@@ -47,7 +49,8 @@ def _sector_in_sight(dx: float, dy: float, ranges: NDArray[np.float32]) -> int:
     """The sector of a place in the robot's frame, -1 if a wall may hide it."""
     sectors = ranges.shape[0]
     sector = math.floor(math.atan2(dy, dx) / (2.0 * math.pi) * sectors + 0.5) % sectors
-    return sector if math.hypot(dx, dy) < max(float(ranges[sector]), 2.0 * _MARGIN) - _MARGIN else -1
+    free = min(ranges[sector], ranges[sector - 1], ranges[(sector + 1) % sectors])
+    return sector if math.hypot(dx, dy) < max(float(free), 2.0 * _MARGIN) - _MARGIN else -1
 
 
 @kernel
@@ -92,7 +95,7 @@ def _search(
                     if squares[y, x] == _WALL or (squares[y, x] == _UNKNOWN and not straight):
                         continue
                     step = _STRAIGHT if straight else _DIAGONAL
-                    new = length + (step * _BESIDE_WALL if squares[y, x] == _NARROW else step)
+                    new = length + (step * _WHERE_NARROW if squares[y, x] == _NARROW else step)
                     if new >= reached[y, x]:
                         continue
                     reached[y, x], via[y, x] = new, via[r, c]
@@ -139,10 +142,10 @@ def feel_frontiers(
 ) -> NDArray[np.float32]:
     """Say for every sector around each pose how much of the known map's edge one reaches by setting out that way.
 
-    The map is searched in squares of two cells a side (an odd last row or column is left out), where a step beside a
-    wall counts three times. An unknown square that a way reaches over free ones, d metres further than the nearest
-    such, adds exp(-d / 2 m) / 5 to the sector in which the way leaves the robot's sight; 1 is the most. So the nearest
-    part of the edge is always felt, however far.
+    The map is searched in squares of two cells a side (an odd last row or column is left out), where a step within two
+    squares of a wall counts three times. An unknown square that a way reaches over free ones, d metres further than the
+    nearest such, adds exp(-d / 2 m) / 5 to the sector in which the way leaves the robot's sight; 1 is the most. So the
+    nearest part of the edge is always felt, however far.
 
     Args:
         occupancy: (worlds, rows, columns) -1, 0, 100.

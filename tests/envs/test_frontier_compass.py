@@ -48,7 +48,7 @@ def way_lengths(grid: NDArray[np.int8], start: tuple[int, int]) -> dict[tuple[in
             diagonal = abs(there[0] - here[0]) == 1 == abs(there[1] - here[1])
             if not (straight or diagonal) or squares[there] == WALL or (diagonal and squares[there] == UNKNOWN):
                 continue
-            narrow = squares[there] == FREE and bool((np.abs(walls - there).max(axis=1) <= 1).any())
+            narrow = squares[there] == FREE and bool((np.abs(walls - there).max(axis=1) <= 2).any())
             heapq.heappush(queue, (length + (2 if straight else 3) * (3 if narrow else 1), there))
     return edge
 
