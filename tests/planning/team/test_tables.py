@@ -25,6 +25,7 @@ def traffic_of(problem, **options):
     return Traffic(roads, ends, **options)
 
 
+@settings(deadline=None)  # the first example compiles
 @given(st.lists(st.integers(0, 50), max_size=60))
 def test_the_open_list_sorts(numbers):
     keys, items = np.empty(64, np.int64), np.empty(64, np.int32)
