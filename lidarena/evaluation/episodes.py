@@ -36,7 +36,9 @@ class Trace:
         circles: Pillars of the floor plan as x, y, radius, shape (C, 3) [m].
         nodes: Nodes of the policy's own graph of the world, shape (V, 2) [m]; empty if it keeps none.
         links: Which of them it has joined, shape (L, 2).
-        goal: Where the robot is to go, shape (1, 2) [m]; empty if it has no goal.
+        goal: Where the robot is to go, shape (1, 2) [m], or each of a team, (robots, 2); empty if it has no goal.
+        team: Positions of a team's robots, shape (T + 1, robots, 2) [m]; empty for a single robot.
+        collided: Which of them touched something, shape (robots,).
     """
 
     true: Floats
@@ -49,6 +51,8 @@ class Trace:
     nodes: Floats = field(default_factory=lambda: np.empty((0, 2)))
     links: NDArray[np.int64] = field(default_factory=lambda: np.empty((0, 2), np.int64))
     goal: Floats = field(default_factory=lambda: np.empty((0, 2)))
+    team: Floats = field(default_factory=lambda: np.empty((0, 0, 2)))
+    collided: NDArray[np.bool_] = field(default_factory=lambda: np.empty(0, np.bool_))
 
 
 @dataclass(frozen=True)
@@ -152,6 +156,7 @@ class _Log:
     rewards: list[float] = field(default_factory=list)
     scalars: dict[str, list[float]] = field(default_factory=dict)
     poses: dict[str, list[Floats]] = field(default_factory=dict)
+    team: list[Floats] = field(default_factory=list)
 
     def note(self, info: Mapping[str, Any]) -> None:
         """Copy what changes from step to step; the environment may reuse its arrays."""
@@ -164,6 +169,8 @@ class _Log:
         ):
             position = np.full(2, np.nan) if pose is None else np.array(pose[:2], dtype=np.float64)
             self.poses.setdefault(key, []).append(position)
+        if "poses" in info:
+            self.team.append(np.array(info["poses"], dtype=np.float64)[:, :2])
 
     def measures(self, info: Mapping[str, Any], ending: str) -> dict[str, float]:
         """Return every measure of the finished episode."""
@@ -212,8 +219,10 @@ def _trace(env: Env, policy: Policy, info: Mapping[str, Any], log: _Log) -> Trac
     return Trace(
         true=true[~np.isnan(true).any(axis=1)],
         estimated=estimated[~np.isnan(estimated).any(axis=1)],
-        grid=np.array(info["map"], dtype=np.int8) if "map" in info else None,
-        goal=np.array(info["goal"], np.float64).reshape(1, 2) if "goal" in info else np.empty((0, 2)),
+        grid=np.array(info["map"], dtype=np.int8) if "map" in info and not log.team else None,
+        goal=np.array(info.get("goals", info.get("goal", [])), np.float64).reshape(-1, 2),
+        team=np.array(log.team) if log.team else np.empty((0, 0, 2)),
+        collided=np.array(info.get("collided", []), np.bool_),
         resolution=float(info.get("resolution", 0.05)),
         origin=np.array(info.get("origin", (0.0, 0.0)), dtype=np.float64),
         edges=np.array(plan.edges) if plan is not None else np.empty((0, 4)),

@@ -158,6 +158,8 @@ def caption(episode: Episode) -> str:
     value = episode.measures
     explored = value.get("completeness", np.nan)
     parts = [f"explored {100 * explored:.0f}%"] if np.isfinite(explored) else []
+    if "arrival" in value:
+        parts.append(f"{100 * value['arrival']:.0f}% of the robots arrived")
     if np.isfinite(value.get("path_ratio", np.nan)):
         parts.append(f"{value['path_ratio']:.2f} × A*'s path")
     lengths = [f"{value[name]:{form}}" for name, form in (("path_length", ".1f"), ("time", ".0f")) if name in value]
@@ -173,12 +175,22 @@ def _traces(row: Sequence[Cell]) -> list[Trace]:
 
 def _trace(cell: Cell) -> Trace | None:
     trace = cell.episodes[0].trace
-    return trace if trace is not None and len(trace.true) + len(trace.estimated) else None
+    return trace if trace is not None and len(trace.true) + len(trace.estimated) + len(trace.team) else None
 
 
 def _draw_trace(axes: "Axes", trace: Trace, episode: Episode, box: tuple[float, float, float, float]) -> None:
     _draw_map(axes, trace)
     _draw_graph(axes, trace)
+    if len(trace.team):
+        _draw_team(axes, trace)
+    else:
+        _draw_robot(axes, trace, crash=episode.ending == "collision")
+    axes.set_aspect("equal")
+    axes.set_xlim(box[0], box[1])
+    axes.set_ylim(box[2], box[3])
+
+
+def _draw_robot(axes: "Axes", trace: Trace, crash: bool) -> None:
     for path, colour, dashes, label in (
         (trace.true, TRUE_COLOUR, "-", "true path"),
         (trace.estimated, ESTIMATE_COLOUR, (0, (4, 2)), "path as SLAM believes it"),
@@ -191,19 +203,24 @@ def _draw_trace(axes: "Axes", trace: Trace, episode: Episode, box: tuple[float, 
         axes.plot(
             *trace.goal[0], "*", color="#E69F00", markeredgecolor="black", markersize=14, label="goal", zorder=4.5
         )
-    crash = episode.ending == "collision"
-    axes.plot(
-        *path[-1],
-        "X" if crash else "s",
-        color="#CC0000" if crash else "black",
-        markeredgecolor="white",
-        markersize=9,
-        label="end",
-        zorder=5,
-    )
-    axes.set_aspect("equal")
-    axes.set_xlim(box[0], box[1])
-    axes.set_ylim(box[2], box[3])
+    _draw_end(axes, path[-1], crash)
+
+
+def _draw_team(axes: "Axes", trace: Trace) -> None:
+    """A colour a robot: its path, where it starts, where it is to go, and where it ended."""
+    for robot, goal in enumerate(trace.goal):
+        path, colour = trace.team[:, robot], LINES[robot % len(LINES)][0]
+        label = ("path, a colour a robot", "start", "goal") if robot == 0 else (None, None, None)
+        axes.plot(*path.T, color=colour, linewidth=1.4, label=label[0], zorder=4)
+        axes.plot(*path[0], "o", color=colour, markeredgecolor="white", markersize=8, label=label[1], zorder=5)
+        axes.plot(*goal, "*", color=colour, markeredgecolor="black", markersize=14, label=label[2], zorder=4.5)
+        _draw_end(axes, path[-1], bool(trace.collided[robot]))
+
+
+def _draw_end(axes: "Axes", place: NDArray[np.float64], crash: bool) -> None:
+    shape, colour = ("X", "#CC0000") if crash else ("s", "black")
+    size = 9 if crash else 6
+    axes.plot(*place, shape, color=colour, markeredgecolor="white", markersize=size, label="end", zorder=5)
 
 
 def _draw_graph(axes: "Axes", trace: Trace) -> None:
@@ -236,7 +253,10 @@ def _draw_map(axes: "Axes", trace: Trace) -> None:
 
 def _box(traces: Sequence[Trace]) -> tuple[float, float, float, float]:
     """Return x_min, x_max, y_min, y_max around walls, paths and known cells."""
-    points = [np.vstack([trace.true, trace.estimated, trace.edges.reshape(-1, 2)]) for trace in traces]
+    points = [
+        np.vstack([trace.true, trace.estimated, trace.team.reshape(-1, 2), trace.edges.reshape(-1, 2)])
+        for trace in traces
+    ]
     for trace in traces:
         if trace.grid is not None and not len(trace.edges):
             rows, columns = np.nonzero(trace.grid >= 0)

@@ -3,11 +3,14 @@
 from dataclasses import replace
 from pathlib import Path
 
+import gymnasium as gym
 import numpy as np
 import pytest
 from PIL import Image
 
+from lidarena.baselines import make
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
+from lidarena.evaluation.episodes import run_episode
 from lidarena.evaluation.pictures import Cell, caption, draw_pictures, overview, progress, progress_band, single
 from tests.evaluation.rows import episode_of, trace_of
 
@@ -114,3 +117,30 @@ def test_a_graph_is_drawn_and_explained_wherever_a_policy_kept_one() -> None:
     lines = {line.get_label(): line for line in figure.axes[1].lines}
     assert np.array_equal(np.array(lines["topological graph"].get_xydata()), graph.nodes)
     assert "topological graph" not in {line.get_label() for line in figure.axes[0].lines}
+
+
+def test_a_team_is_drawn_robot_by_robot() -> None:
+    steps = np.linspace(0, 1, 20)[:, None]
+    paths = np.stack([np.hstack([1 + 2 * steps, 1 + 0 * steps]), np.hstack([3 - steps, 2 + steps])], axis=1)
+    goals = np.array([[3.0, 1.0], [2.0, 3.0]])
+    bare = replace(trace_of(grid=False), true=np.empty((0, 2)), estimated=np.empty((0, 2)))
+    team = replace(bare, team=paths, goal=goals, collided=np.array([False, True]))
+    episode = episode_of(0, {"arrival": 0.5, "path_length": 3.4}, "collision", np.nan, team)
+    figure = single(Cell(EnvEntry(id="office"), PolicyEntry(name="apart"), [episode]))
+    axes = figure.axes[0]
+    assert axes.get_title() == "apart in office, seed 0\n50% of the robots arrived in 3.4 m: collision"
+    lines = [line for line in axes.get_lines() if len(line.get_xdata()) == 20]
+    assert [line.get_xydata()[-1].tolist() for line in lines] == goals.tolist()
+    assert lines[0].get_color() != lines[1].get_color()
+    ends = [line for line in axes.get_lines() if line.get_label() == "end"]
+    assert [line.get_marker() for line in ends] == ["s", "X"]
+    figure.canvas.draw()
+
+
+def test_a_comparison_of_teams_keeps_what_pictures_need() -> None:
+    env = gym.make("lidarena/CorridorCentral-v0", map="passing", robots=2, places="predefined", expose_truth=True)
+    episode = run_episode(env, make("prioritized_search", env), 3, keep_trace=True, max_steps=20)
+    trace = episode.trace
+    assert trace is not None and trace.team.shape == (21, 2, 2) and trace.goal.shape == (2, 2)
+    assert trace.grid is None and not trace.collided.any() and len(trace.edges)
+    assert caption(episode).startswith("0% of the robots arrived")
