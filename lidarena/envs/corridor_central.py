@@ -5,7 +5,6 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
 from lidarena.envs.batch_infos import Info, of_world
@@ -14,6 +13,7 @@ from lidarena.envs.corridor_episodes import CorridorEpisodes
 from lidarena.envs.corridor_options import CorridorOptions
 from lidarena.envs.corridor_picture import TeamSketch
 from lidarena.envs.corridor_scene import draw_world
+from lidarena.envs.single_world import SingleWorld
 from lidarena.world.floorplan import Floorplan
 
 
@@ -44,7 +44,7 @@ def team_infos(episodes: CorridorEpisodes) -> Info:
     return own | episodes.world_infos()
 
 
-class CorridorCentralEnv(gym.Env[Any, Any]):
+class CorridorCentralEnv(SingleWorld):
     """Bring a team of robots to their goals, without touching a wall or each other.
 
     ## Description
@@ -104,9 +104,7 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
         """
         options = CorridorOptions.checked(keywords)
         self.episodes = CorridorEpisodes(1, options)
-        self.render_mode = options.render_mode
-        self.observation_space, self.action_space = team_spaces(self.episodes)
-        self._running = False
+        super().__init__(*team_spaces(self.episodes), options.render_mode)
 
     @property
     def floorplan(self) -> Floorplan:
@@ -118,32 +116,18 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
         """The keywords."""
         return self.episodes.options
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Info]:
-        """Begin an episode."""
-        super().reset(seed=seed)
+    def _begin(self, seed: int | None) -> None:
         self.episodes.reset([0], [self.np_random])
-        self._running = True
-        return self.episodes.observe()[0], self._info()
 
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
-        """Act for one decision period.
-
-        Raises:
-            ActionError: An action that is NaN, out of range, or of the wrong shape or type.
-            ResetNeeded: The environment was not reset, or its episode has ended.
-        """
-        if not self._running:
-            raise ResetNeeded(
-                "step() needs a running episode; call reset() first, and again after an episode has ended"
-            )
+    def _advance(self, action: Any) -> tuple[float, bool, bool]:
         rewards, _, _ = self.episodes.step([action])
         terminated, over = bool(self.episodes.finished.all()), bool(self.episodes.over[0])
-        self._running = not over
-        team = float(rewards.sum(axis=1)[0])
-        return self.episodes.observe()[0], team, terminated, over and not terminated, self._info()
+        return float(rewards.sum(axis=1)[0]), terminated, over and not terminated
+
+    def _observe(self) -> Any:
+        return self.episodes.observe()[0]
 
     def _info(self) -> Info:
-        """The only world's info; its map is a copy, since Gymnasium asks that no two steps share memory."""
         info = of_world(team_infos(self.episodes), 0)
         info["map"] = info["map"].copy()
         return info
@@ -152,14 +136,7 @@ class CorridorCentralEnv(gym.Env[Any, Any]):
         """Let a planner's sketch be seen in the picture until the next one."""
         self.episodes.sketches[0] = sketch
 
-    def render(self) -> NDArray[np.uint8] | None:
-        """Picture (height, width, 3); None without ``render_mode``, or where a window shows it (``"human"``).
-
-        Raises:
-            ResetNeeded: The environment was not reset.
-        """
-        if self.render_mode is None:
-            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+    def _picture(self) -> NDArray[np.uint8] | None:
         return draw_world(self.episodes, 0)
 
 

@@ -3,9 +3,7 @@
 from collections.abc import Iterable, Sequence
 from typing import Any
 
-import gymnasium as gym
 import numpy as np
-from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
 from lidarena.envs.batch_infos import Info, of_world, row_of
@@ -13,10 +11,11 @@ from lidarena.envs.batched_worlds import BatchedWorlds, Outcome, whole_number_of
 from lidarena.envs.exploration_episodes import ExplorationEpisodes
 from lidarena.envs.exploration_options import ExplorationOptions
 from lidarena.envs.exploration_picture import draw_exploration
+from lidarena.envs.single_world import SingleWorld
 from lidarena.world.floorplan import Floorplan
 
 
-class ExplorationEnv(gym.Env[Any, Any]):
+class ExplorationEnv(SingleWorld):
     """Explore an unknown world and map it, without losing track of where you are.
 
     ## Description
@@ -106,36 +105,20 @@ class ExplorationEnv(gym.Env[Any, Any]):
         """
         options = ExplorationOptions.checked(keywords)
         self._episodes = ExplorationEpisodes(1, options)
-        self.render_mode = options.render_mode
-        self.observation_space = self._episodes.single_observation_space
-        self.action_space = self._episodes.single_action_space
-        self._running = False
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(*spaces, options.render_mode)
 
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Info]:
-        """Begin an episode."""
-        super().reset(seed=seed)
+    def _begin(self, seed: int | None) -> None:
         self._episodes.reset([0], [self.np_random])
-        self._running = True
-        return row_of(self._episodes.observe(), 0), self._info()
 
-    def step(self, action: Any) -> tuple[Any, float, bool, bool, Info]:
-        """Act for one decision period.
-
-        Raises:
-            ActionError: An action that is NaN, out of range, or of the wrong shape or type.
-            ResetNeeded: The environment was not reset, or its episode has ended.
-        """
-        if not self._running:
-            raise ResetNeeded(
-                "step() needs a running episode; call reset() first, and again after an episode has ended"
-            )
+    def _advance(self, action: Any) -> tuple[float, bool, bool]:
         rewards, terminated, truncated = self._episodes.step([action])
-        self._running = not (terminated[0] or truncated[0])
-        observation = row_of(self._episodes.observe(), 0)
-        return observation, float(rewards[0]), bool(terminated[0]), bool(truncated[0]), self._info()
+        return float(rewards[0]), bool(terminated[0]), bool(truncated[0])
+
+    def _observe(self) -> Any:
+        return row_of(self._episodes.observe(), 0)
 
     def _info(self) -> Info:
-        """The only world's info; its map is a copy, since Gymnasium asks that no two steps share memory."""
         info = of_world(self._episodes.infos(), 0)
         info["map"] = info["map"].copy()
         info["map"].flags.writeable = False
@@ -147,18 +130,9 @@ class ExplorationEnv(gym.Env[Any, Any]):
         core = self._episodes.core
         return core.plans[int(core.plan[0])]
 
-    def render(self) -> NDArray[np.uint8] | None:
-        """Picture (height, width, 3) of the truth and of what the filter believes; None without ``render_mode``.
-
-        Raises:
-            ResetNeeded: The environment was not reset.
-        """
-        if self._episodes.recorder is None:
-            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
-            return None
-        if not self._episodes.recorder.begun(0):
-            raise ResetNeeded("render() needs an episode; call reset() first")
-        return draw_exploration(self._episodes.core, self._episodes.recorder, 0)
+    def _picture(self) -> NDArray[np.uint8] | None:
+        recorder = self._episodes.recorder
+        return None if recorder is None else draw_exploration(self._episodes.core, recorder, 0)
 
 
 class BatchedExploration(BatchedWorlds):
