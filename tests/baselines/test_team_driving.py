@@ -156,6 +156,13 @@ def test_a_robot_stops_before_it_touches_one_that_no_plan_foresaw(away: tuple[fl
     assert driving.waits == (((0, 1),) if stops else ())
 
 
+def test_a_robot_that_drives_away_from_one_too_near_does_not_stop() -> None:
+    driving = ordered(TeamPlan(True, [np.array([(5, 4), (5, 5)]), np.array([(15, 15)])], 1.0, 1.0, True, ""))
+    here = driving.curves[0][1] - (0.1, 0.0)
+    commands = driving.commands(still(np.array([here, (here[0] - 0.1, here[1] + 0.3)]), arrived=(1,)))
+    assert commands[0, 0] == pytest.approx(0.1 / 0.6) and driving.waits == ()
+
+
 def test_everybody_begins_at_once_where_nobody_is_in_the_way() -> None:
     paths = [np.array([(row, col) for col in range(8)]) for row in (2, 8, 14)]
     driving = ordered(TeamPlan(True, paths, 21.0, 21.0, True, ""))

@@ -124,13 +124,14 @@ def test_robots_begin_at_rest_on_their_starts_and_look_along_their_way() -> None
 def test_a_way_that_is_just_wide_enough_is_a_way(start: tuple[float, float]) -> None:
     """In a corridor of 0.8 m a robot of 0.29 m has no 3 cm to spare in any cell; its way is no less a way."""
     episodes = begin(map="passing", robots=1, radius=0.29, starts=[start], goals=[(3.5, 0.6)], **EXACT)
-    remaining = float(episodes.core.senses.remaining[0, 0])
+    remaining = first = float(episodes.core.senses.remaining[0, 0])
     assert 2.6 <= remaining < 2.5 * 2.6 + 1.0
     for _ in range(20):
         rewards, _, _ = episodes.step(np.array([[(1.0, 0.0)]]))
         assert abs(rewards[0, 0]) < 12.0
         assert episodes.core.senses.remaining[0, 0] <= remaining + 0.3
         remaining = float(episodes.core.senses.remaining[0, 0])
+    assert first - remaining > 1.5  # of the 2 m that it drove
 
 
 def test_robots_in_different_worlds_know_nothing_of_each_other() -> None:

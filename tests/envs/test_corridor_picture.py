@@ -64,7 +64,7 @@ def test_an_arrow_leads_from_who_waits_to_whom_it_waits_for() -> None:
         between = tuple(POSES[0, :2] + share * (POSES[1, :2] - POSES[0, :2]))
         assert count(near(waiting, between, 0.2), ORANGE) > 3 and count(near(bare, between, 0.2), ORANGE) == 0
     towards, away = (near(waiting, tuple(POSES[robot, :2] + (d, 0)), 0.55) for robot, d in ((1, -0.5), (0, 0.5)))
-    assert count(towards, ORANGE) > count(away, ORANGE)  # the tip is at robot 1
+    assert count(towards, ORANGE) > 1.3 * count(away, ORANGE)  # the tip is at robot 1
 
 
 def test_who_has_arrived_and_who_has_crashed_is_seen() -> None:
