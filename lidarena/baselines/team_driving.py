@@ -98,6 +98,9 @@ class OrderedDriving:
                 if not (np.hypot(*(position - there)) < _PASSED or (passed and aside < length * 2 * _PASSED)):
                     break
                 self.completed[robot] += 1
+            target, _ = self._target(robot)
+            if np.hypot(*(position - curve[target])) < _PASSED:  # it cut a corner, or need not step aside any more
+                self.completed[robot] = target
 
     def _may_begin(self, robot: int, step: int) -> bool:
         return not len(self._precedence.hinderers(robot, step, self.completed))
@@ -108,7 +111,7 @@ class OrderedDriving:
         commands = np.zeros((len(self.curves), 2))
         for robot in np.flatnonzero(state.active).tolist():
             target, hinderers = self._target(robot)
-            speed, rate = steer_to(state.poses[robot], target)
+            speed, rate = steer_to(state.poses[robot], self.curves[robot][target])
             ahead = self._in_the_way(robot, speed, state)
             commands[robot] = (0.0 if ahead else speed), rate
             waits += [(robot, int(other)) for other in {*hinderers, *ahead}]
@@ -124,17 +127,17 @@ class OrderedDriving:
         near[robot] = False
         return [int(other) for other in np.flatnonzero(near)]
 
-    def _target(self, robot: int) -> tuple[Floats, NDArray[np.int64]]:
-        """Where a robot aims, and for whom it waits there, if it may go no farther."""
+    def _target(self, robot: int) -> tuple[int, NDArray[np.int64]]:
+        """The point of its path at which a robot aims, and for whom it waits there, if it may go no farther."""
         curve, step = self.curves[robot], int(self.completed[robot])
         travelled, nobody = 0.0, np.empty(0, np.int64)
         while step < len(curve) - 1 and travelled < _LOOK:
             hinderers = self._precedence.hinderers(robot, step, self.completed)
             if len(hinderers):
-                return curve[step], hinderers
+                return step, hinderers
             travelled += float(np.hypot(*(curve[step + 1] - curve[step])))
             step += 1
-        return curve[step], nobody
+        return step, nobody
 
     def remaining(self, robot: int) -> Floats:
         """The points (n, 2) that a robot still has to pass."""

@@ -106,8 +106,8 @@ class SearchingFleet(PlannedFleet):
     def _watch(self, state: FleetState) -> None:
         """Note who moves."""
         shift = np.hypot(*(state.poses - self._anchor)[:, :2].T)
-        turned = np.abs(np.angle(np.exp(1j * (state.poses - self._anchor)[:, 2]))) if state.time else shift
-        moving = (shift > _MOVED) | (turned > 4 * _MOVED)
+        turn = np.where(np.isfinite(shift), state.poses[:, 2] - self._anchor[:, 2], 0.0)
+        moving = (shift > _MOVED) | (np.abs(np.angle(np.exp(1j * turn))) > 4 * _MOVED)
         self._anchor[moving] = state.poses[moving]
         self._moved_at[moving] = state.time
 
@@ -129,13 +129,17 @@ class SearchingFleet(PlannedFleet):
             waited_for[other] = True
         in_the_way = held_up & waited_for & ~self._around
         freed = self._around & ~held_up & state.active
-        deadlock = state.time - max(self._stepped_at, self._planned_at) > _DEADLOCK
-        return bool(in_the_way.any() or freed.any() or deadlock)
+        return bool(in_the_way.any() or freed.any() or self._deadlocked(state))
+
+    def _deadlocked(self, state: FleetState) -> bool:
+        return state.time - max(self._stepped_at, self._planned_at) > _DEADLOCK
 
     def _replan(self, state: FleetState) -> None:
         """Plan everybody who moves from where he stands, around those who do not; keep the old plan if that fails."""
-        self._planned_at = state.time
         around = self._held_up(state)
+        if self._deadlocked(state):  # who was planned around is told to stand: only a new plan shows whether it can go
+            around &= ~state.active
+        self._planned_at = state.time
         movers = np.flatnonzero(state.active & ~around)
         if not len(movers):
             return

@@ -19,6 +19,7 @@ from lidarena.envs.corridor_options import CorridorOptions
 from lidarena.envs.corridor_places import Places
 from lidarena.envs.worker_threads import on_threads
 from lidarena.planning.grid_search import path_costs
+from lidarena.planning.team.roads import roads_of
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
 from lidarena.world.physics import RobotSpec
@@ -79,7 +80,9 @@ class CorridorCore:
         beyond = coarse.clearance.astype(np.float64) - self.options.radius
         cost = 1.0 + _WALL_COST * np.clip(1.0 - beyond / _COMFORT, 0.0, 1.0)
         self._costs = np.where(grid.blocked | (beyond < _WALL_GAP), np.inf, cost)
-        self._known: OrderedDict[tuple[int, int], NDArray[np.float32]] = OrderedDict()
+        fitting = roads_of(grid.blocked, 8, grid.in_cells(self.options.radius)).index >= 0
+        self._tight_costs = np.where(fitting | np.isfinite(self._costs), cost, np.inf)
+        self._known: OrderedDict[tuple[int, int, bool], NDArray[np.float32]] = OrderedDict()
 
     def _allocate(self) -> None:
         shape = (self.worlds, self.robots)
@@ -110,7 +113,7 @@ class CorridorCore:
         self._stalled[world] = self.travelled[world] = 0.0
         self._look_up_ways(world)
         self.physics.poses[world, :, :2] = starts
-        self.senses.remaining[world] = 1e6
+        self.senses.remaining[world] = np.hypot(*(goals - starts).T)
         for robot in range(self.robots):
             x, y = starts[robot].tolist()
             carrot = self.senses.carrot[world, robot]
@@ -119,17 +122,25 @@ class CorridorCore:
         self._perceive(self.physics.poses, world, world + 1)
 
     def _look_up_ways(self, world: int) -> None:
-        for robot, cell in enumerate(self.places.grid.cells(self.goals[world]).tolist()):
-            self.fields[world, robot] = self._field((cell[0], cell[1]))
+        for robot, (row, col) in enumerate(self.places.grid.cells(self.goals[world]).tolist()):
+            self.fields[world, robot] = self._field((row, col))
+            (x, y), goal = self.starts[world, robot].tolist(), self.goals[world, robot]
+            if look_along(self.fields[world, robot], goal, x, y, self.ground, np.inf, np.empty(2)) == np.inf:
+                self.fields[world, robot] = self._field((row, col), tight=True)
 
-    def _field(self, cell: tuple[int, int]) -> NDArray[np.float32]:
-        """Lengths of the ways from everywhere to a cell [m], 1e9 where there is none."""
-        if cell not in self._known:
-            lengths = path_costs(self._costs, cell) * self.places.grid.resolution
-            self._known[cell] = np.where(np.isfinite(lengths), lengths, 1e9).astype(np.float32)
+    def _field(self, cell: tuple[int, int], tight: bool = False) -> NDArray[np.float32]:
+        """Lengths of the ways from everywhere to a cell [m], 1e9 where there is none.
+
+        ``tight``: through whatever a robot just fits through, for those whom the room beside the walls leaves no way.
+        """
+        key = (*cell, tight)
+        if key not in self._known:
+            costs = self._tight_costs if tight else self._costs
+            lengths = path_costs(costs, cell) * self.places.grid.resolution
+            self._known[key] = np.where(np.isfinite(lengths), lengths, 1e9).astype(np.float32)
             if len(self._known) > _KEPT_FIELDS:
                 self._known.popitem(last=False)
-        return self._known[cell]
+        return self._known[key]
 
     def step(self, commands: NDArray[np.float64]) -> None:
         """Drive every robot for one decision period.

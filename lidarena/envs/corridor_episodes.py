@@ -215,3 +215,6 @@ class CorridorEpisodes:
             getattr(self, name)[...] = saved[name]
         self._arrival_time[...] = saved["arrival_time"]
         self.core.load_arrays(saved)
+        if self.trails is not None:  # what was driven before is not saved
+            for world, poses in enumerate(self.core.physics.poses):
+                self.trails.begin(world, poses)

@@ -386,18 +386,19 @@ def _write_neighbours(
     Bearing cos, sin; d / (d + 2 m); relative velocity along and across the robot's heading, over twice ``top``.
     """
     out[:] = 0.0
-    pose, last = poses[robot], -1.0
+    pose, last, before = poses[robot], -1.0, -1
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     for n in range(min(neighbours, poses.shape[0] - 1)):
         nearest, least = -1, 1e18
         for other in range(poses.shape[0]):
             dx, dy = poses[other, 0] - pose[0], poses[other, 1] - pose[1]
             square = dx * dx + dy * dy
-            if other != robot and last < square < least:
+            later = square > last or (square == last and other > before)  # of equally near ones the first by number
+            if other != robot and later and square < least:
                 nearest, least = other, square
         if nearest < 0:
             return
-        last = least
+        last, before = least, nearest
         _write_direction(out, 5 * n, pose, poses[nearest], math.sqrt(least))
         vx = velocity[nearest, 0] * math.cos(poses[nearest, 2]) - velocity[robot, 0] * cos
         vy = velocity[nearest, 0] * math.sin(poses[nearest, 2]) - velocity[robot, 0] * sin
