@@ -1,5 +1,6 @@
 """Planned fleets: the methods of Bennewitz & Burgard as policies that execute their plans in the world, in time."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,7 @@ from lidarena.planning.inflation import clearance
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.plan import Method, plan_team
 from lidarena.planning.team.team_plan import TeamPlan
-from lidarena.world.refusals import ConfigError
+from lidarena.world.refusals import ConfigError, TeamError
 
 ROOM = 0.2
 """Robots are planned as discs of at least this radius [m]."""
@@ -66,14 +67,28 @@ class PlannedFleet:
         """Return the team's next actions."""
         state = self.fleet.read(info)
         if self.plan is None:
-            self.plan = self.plan_from(state, self.fleet.grid(info))
+            self.plan = self._plan_or_say_why(state, self.fleet.grid(info))
             self.message = self.plan.message
-            self.finished = not self.plan.solved and self.needs_solution
+            pathless = not all(len(path) for path in self.plan.paths)
+            self.finished = not self.plan.solved and (self.needs_solution or pathless)
             if not self.finished:
                 self.begin_driving()
+            elif self.fleet.drawn:
+                self.fleet.show(TeamSketch(note=self.message))
         if self.finished:
             return self.fleet.actions(np.zeros((self.fleet.robots, 2)), state)
         return self.fleet.actions(self.drive(state, info), state)
+
+    def _plan_or_say_why(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
+        """Plan; where the team has no room for the discs that are planned for, the message says so."""
+        try:
+            return self.plan_from(state, grid)
+        except TeamError as error:
+            paths = [np.empty((0, 2), np.int64)] * self.fleet.robots
+            words = (
+                f"Nothing was planned for discs of radius {self.radius:g} m in cells of {grid.resolution:g} m: {error}."
+            )
+            return TeamPlan(False, paths, math.inf, 0.0, False, words)
 
     def plan_from(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan from where the robots are."""

@@ -77,6 +77,10 @@ class ArenaEnv(SingleWorld):
     y_max [m]. With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and
     ``optimal_time`` (BARN's, [s]; infinite elsewhere), for evaluation.
 
+    Gymnasium's own ``SyncVectorEnv`` and ``AsyncVectorEnv`` stack the infos of their worlds, which cannot be done with
+    ``circles`` where arenas have different numbers of them: take ``make_vec``'s ``vector_entry_point``, or
+    ``knowledge="lidar"``.
+
     ## Arguments
 
     See ``ArenaOptions``.

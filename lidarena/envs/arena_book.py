@@ -159,7 +159,7 @@ def _has_path(arena: Arena) -> bool:
 
 def _laid_out(arena: Arena) -> Course:
     """Give every circle and the robot an extent, refuse ends inside of obstacles, and draw the room."""
-    circles = arena.circles.copy()
+    circles = make_scene(arena.circles, arena.start, arena.goal, bounds=arena.bounds).discs
     circles[:, 2] = np.maximum(circles[:, 2], _LEAST_OBSTACLE * arena.scale if arena.plan is None else 0.0)
     circles.flags.writeable = False
     arena = replace(arena, circles=circles, robot_radius=max(arena.robot_radius, _LEAST_ROBOT * arena.scale))

@@ -4,7 +4,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from lidarena.envs.keyword_checks import check_choice, check_names, check_range, check_switch
+import numpy as np
+
+from lidarena.envs.keyword_checks import check_choice, check_names, check_range, check_switch, plain
 from lidarena.world.arenas import Arena
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.random_arenas import DENSITY
@@ -101,7 +103,7 @@ class ArenaOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
         check_names("an arena environment", keywords, [field.name for field in fields(cls)])
-        options = cls(**keywords)
+        options = cls(**plain(keywords))
         for name, allowed in _CHOICES.items():
             check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():
@@ -128,6 +130,21 @@ class ArenaOptions:
             check_range("density", share, 0.0, 0.3)
         if self.path is not None and not isinstance(self.path, str):
             raise ConfigError(f"path = {self.path!r} must be the name of the BARN file")
+        for name in ("start", "goal"):
+            _check_point(name, getattr(self, name))
+        self._check_meant()
+
+    def _check_meant(self) -> None:
+        """Refuse what none of the arenas would look at."""
+        texts = [spec for spec in self.specs if isinstance(spec, str)]
+        if self.path is not None and not any(text.partition(":")[0] == "barn" for text in texts):
+            raise ConfigError(f"path = {self.path!r} is for 'barn' arenas only, not for arena = {self.arena!r}")
+        drawn = any(text.partition(":")[0] == "random" and "density=" not in text for text in texts)
+        if self.density != DENSITY and not drawn:
+            raise ConfigError(
+                f"density = {self.density!r} is for 'random' arenas without one of their own only, "
+                f"not for arena = {self.arena!r}"
+            )
 
     @property
     def specs(self) -> list[ArenaSpec]:
@@ -138,3 +155,12 @@ class ArenaOptions:
     def densities(self) -> list[float]:
         """The densities to draw from."""
         return list(self.density) if isinstance(self.density, Sequence) else [self.density]
+
+
+def _check_point(name: str, value: Any) -> None:
+    try:
+        fits = value is None or np.asarray(value, np.float64).shape == (2,)
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise ConfigError(f"{name} = {value!r} must be two numbers, x, y in metres")

@@ -5,6 +5,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
+from lidarena.envs.keyword_checks import plain
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.refusals import ConfigError, suggest
 
@@ -105,7 +106,7 @@ class CorridorOptions:
         for name in keywords:
             if name not in names:
                 raise ConfigError(f"unknown keyword {name!r} of a corridor environment{suggest(name, names)}")
-        options = cls(**keywords)
+        options = cls(**plain(keywords))
         for name, (low, high) in _RANGES.items():
             _check_range(name, getattr(options, name), low, high)
         for name, (least, most) in _WHOLE.items():

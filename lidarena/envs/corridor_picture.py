@@ -164,7 +164,8 @@ def _draw_arrow(canvas: Canvas, start: NDArray[np.float64], end: NDArray[np.floa
 
 def _number_robots(canvas: Canvas, scene: TeamScene) -> None:
     for robot, pose in enumerate(scene.poses):
-        for point, shift in ((pose[:2], 11), (scene.goals[robot], 12)):
+        places = [(pose[:2], 11), (scene.goals[robot], 12)]
+        for point, shift in places[: 1 if scene.arrived[robot] else 2]:  # two numbers in one place cannot be read
             column = round((point[0] - canvas.bounds[0]) * canvas.scale) + shift
             row = canvas.image.shape[0] - round((point[1] - canvas.bounds[1]) * canvas.scale) - 6
             write(canvas.image, str(robot), column, row, WHITE, 0.45)

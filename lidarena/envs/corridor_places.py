@@ -187,7 +187,7 @@ class Places:
         for kind, points in (("start", starts), ("goal", goals)):
             for robot, clearance in enumerate(self._plan.clearance(points)):
                 if clearance < radius:
-                    where = "is in a wall" if clearance < 0 else f"is {clearance:.2f} m from a wall"
+                    where = "is in a wall" if clearance <= 0 else f"is {clearance:.2f} m from a wall"
                     x, y = points[robot]
                     raise TeamError(
                         f"the {kind} ({x:g}, {y:g}) of robot {robot} {where} of map {self._plan.name!r}; "

@@ -5,6 +5,7 @@ from lidarena.envs import corridor_v0
 fleet = corridor_v0.parallel_env(map="office", robots=4)
 """
 
+from collections.abc import Mapping
 from typing import Any
 
 import gymnasium as gym
@@ -22,7 +23,7 @@ from lidarena.envs.corridor_picture import TeamSketch
 from lidarena.envs.corridor_scene import close_window, draw_world
 from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import ActionError, suggest
+from lidarena.world.refusals import ActionError, ConfigError, suggest
 
 __all__ = ["CorridorEnv", "agent_name", "env", "parallel_env", "raw_env"]
 
@@ -128,6 +129,8 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         Raises:
             Refusal: A keyword, floor plan, start or goal that cannot be had.
         """
+        if "max_episode_steps" in keywords:
+            raise ConfigError("keyword 'max_episode_steps' is called 'max_cycles' here, as everywhere in PettingZoo")
         options = CorridorOptions.checked(keywords | {"max_episode_steps": max_cycles})
         self.episodes = CorridorEpisodes(1, options)
         self.max_cycles, self.render_mode = max_cycles, options.render_mode
@@ -195,6 +198,8 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         return self._observations(agents), gains, ended, cut_off, self._infos(agents)
 
     def _check_agents(self, actions: dict[str, Any]) -> None:
+        if not isinstance(actions, Mapping):
+            raise ActionError(f"actions of type {type(actions).__name__} were given; a dictionary by agent is needed")
         for name in actions:
             if name not in self._numbers:
                 raise ActionError(f"there is no agent {name!r}{suggest(str(name), self.agents)}")
@@ -211,7 +216,10 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
     def _checked(self, name: str, action: Any) -> NDArray[np.generic]:
         """An agent's action, refused here under its name rather than later among all."""
         space = self._action_spaces[name]
-        value = np.asarray(action)
+        try:
+            value = np.asarray(action)
+        except ValueError:  # rows of different lengths
+            value = np.empty(0, object)
         if space.shape != value.shape or value.dtype.kind not in ("iu" if space.shape == () else "iuf"):
             raise ActionError(f"the action {action!r} of agent {name!r} is not of its action space {space}")
         inside = 0 <= value < 7 if space.shape == () else bool((np.abs(value) <= 1.0).all())

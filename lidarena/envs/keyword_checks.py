@@ -1,6 +1,7 @@
 """Checks of an environment's keywords at the border: one sentence that names the value and what is allowed."""
 
 import math
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
@@ -17,6 +18,11 @@ def check_names(what: str, keywords: Mapping[str, Any], allowed: Iterable[str]) 
     for name in keywords:
         if name not in names:
             raise ConfigError(f"unknown keyword {name!r} of {what}{suggest(name, names)}")
+
+
+def plain(keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keywords with every path as the string that it stands for."""
+    return {name: os.fspath(value) if isinstance(value, os.PathLike) else value for name, value in keywords.items()}
 
 
 def check_choice(name: str, value: Any, allowed: Sequence[str | None]) -> None:

@@ -132,7 +132,10 @@ def potential_at(
         if i < 4:
             gap = wall_gap(x, y, walls, i)
         else:
-            gap = math.hypot(x - discs[i - 4, 0], y - discs[i - 4, 1]) - discs[i - 4, 2]
+            dx, dy, reach = x - discs[i - 4, 0], y - discs[i - 4, 1], discs[i - 4, 2] + field.rho_0
+            if dx * dx + dy * dy >= reach * reach:
+                continue  # which most are, and what a square root is too dear for
+            gap = math.hypot(dx, dy) - discs[i - 4, 2]
         if gap <= 0.0:
             return math.inf
         if gap < field.rho_0:

@@ -18,6 +18,7 @@ TrapTest = Literal["equal", "window", "none"]
 FillShape = Literal["reciprocal", "shifted", "bump", "none"]
 
 _SHAPES = {"reciprocal": RECIPROCAL, "shifted": SHIFTED, "bump": BUMP, "none": BUMP}
+_MOST_WAYS = 3
 _CHOICES = {"trap_test": get_args(TrapTest), "fill_shape": get_args(FillShape)}
 
 
@@ -167,9 +168,10 @@ def _check_value(name: str, value: Any, default: Any) -> None:
         if not isinstance(value, bool | np.bool_):
             raise ConfigError(f"{name} = {value!r}; True or False is needed")
     elif isinstance(default, int):
-        least = 0 if name in ("seed", "max_fills") else 1
-        if isinstance(value, bool) or not isinstance(value, int | np.integer) or not least <= value < 2**63:
-            raise ConfigError(f"{name} = {value!r}; a whole number from {least} on is needed")
+        least, most = 0 if name in ("seed", "max_fills") else 1, _MOST_WAYS if name == "ways" else 2**63 - 1
+        if isinstance(value, bool) or not isinstance(value, int | np.integer) or not least <= value <= most:
+            allowed = f"from {least} to {most}" if name == "ways" else f"from {least} on"
+            raise ConfigError(f"{name} = {value!r}; a whole number {allowed} is needed")
     elif value is None and name in ("eta", "s"):
         return
     elif (
@@ -214,7 +216,7 @@ def field_parameters(preset: str = "robust", **overrides: Any) -> FieldParameter
     Raises:
         ConfigError: The preset or a parameter is not known, or a value is out of range.
     """
-    if preset not in PRESETS:
+    if not isinstance(preset, str) or preset not in PRESETS:
         raise ConfigError(f"preset {preset!r} is not known{suggest(str(preset), PRESETS)}")
     known = [item.name for item in fields(FieldParameters)]
     for name in overrides:

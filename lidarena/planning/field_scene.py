@@ -108,7 +108,7 @@ def _number(name: str, value: object) -> float:
 
 def _array(name: str, values: ArrayLike, wanted: str) -> NDArray[np.float64]:
     try:
-        return np.array(values, dtype=np.float64)
+        return np.array(values, dtype=np.float64, order="C")  # kernels would be compiled anew for another order
     except (TypeError, ValueError):
         raise MapError(f"{name} {values!r} are not numbers; {wanted}") from None
 
@@ -153,7 +153,8 @@ def _refuse_inside(name: str, point: NDArray[np.float64], scene: FieldScene, rad
     if worst < len(scene.discs):
         x, y, reach = scene.discs[worst]
         where = f"the obstacle at ({x:g}, {y:g}) of radius {reach - radius:g} m"
+    lies = f"lies {-gaps[worst]:.3g} m inside" if gaps[worst] < 0.0 else "touches"
     raise MapError(
-        f"the {name} ({point[0]:g}, {point[1]:g}) lies {-gaps[worst]:.3g} m inside {where} "
+        f"the {name} ({point[0]:g}, {point[1]:g}) {lies} {where} "
         f"(robot radius {radius:g} m); it must be outside of every obstacle"
     )

@@ -90,7 +90,8 @@ def passing() -> Floorplan:
 def blocked() -> Floorplan:
     """16.2 m × 6.4 m: a hall, and a dead end 0.8 m wide in which one robot stands that others want to pass (Fig. 17).
 
-    In the paper's order, longest way first, robots 0 and 2 are on their way into the dead end before 4 can get out.
+    In the paper's order, longest way first, robots 0 and 1 are on their way into the dead end before 2 can get out; so
+    it is with the first three robots and with any more.
     """
     width, height = 16.2, 6.4
     rings = [[(6.2, 0.0), (width, 0.0), (width, 2.8), (6.2, 2.8)], [(6.2, 3.6), (width, 3.6), (width, 6.4), (6.2, 6.4)]]
@@ -130,8 +131,8 @@ _DRAWN_FROM: dict[str, list[tuple[float, float]]] = {
 _FIXED: dict[str, tuple[list[tuple[float, float]], list[tuple[float, float]]]] = {
     "passing": ([(0.9, 0.7), (7.5, 0.7)], [(9.5, 0.7), (0.9, 0.7)]),
     "blocked": (
-        [(4.5, 3.3), (0.9, 0.9), (3.5, 3.3), (0.9, 5.5), (12.1, 3.3), (3.1, 5.5)],
-        [(15.1, 3.3), (2.1, 5.5), (14.3, 3.3), (2.5, 0.9), (5.1, 1.5), (4.7, 0.9)],
+        [(4.5, 3.3), (3.5, 3.3), (12.1, 3.3), (0.9, 0.9), (0.9, 5.5), (3.1, 5.5)],
+        [(15.1, 3.3), (14.3, 3.3), (5.1, 1.5), (2.1, 5.5), (2.5, 0.9), (4.7, 0.9)],
     ),
 }
 

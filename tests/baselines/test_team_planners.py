@@ -95,6 +95,16 @@ def test_who_has_no_plan_stands_still_and_says_why() -> None:
     assert not policy.finished and policy.plan is None and policy.message == ""
 
 
+@pytest.mark.parametrize("name", ["independent_astar", "prioritized_astar", "coordination", "prioritized_search"])
+def test_who_has_no_room_for_a_plan_stands_still_and_says_why(name: str) -> None:
+    near = {"map": "office", "robots": 2, "starts": [(1, 1), (1.25, 1)], "goals": [(5, 1.5), (3, 1)]}
+    env, policy, infos = make(name, near | {"render_mode": "rgb_array"})
+    actions = policy.act({}, infos)
+    assert policy.finished and not any(action.any() for action in actions.values())
+    assert "radius 0.2 m" in policy.message and "starts of robots 0 and 1 overlap" in policy.message
+    assert env.episodes.sketches[0].note == policy.message
+
+
 def test_the_model_of_straying_keeps_planned_robots_further_apart() -> None:
     model = DeviationModel.fitted(np.random.default_rng(0).uniform(0.0, 0.8, 5000), 28)
     least = []

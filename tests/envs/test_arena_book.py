@@ -138,6 +138,20 @@ def test_what_cannot_be_used_is_refused_when_the_environment_is_made(
         book(**keywords)
 
 
+@pytest.mark.parametrize("circles", [[[50, 50, 3]], np.array([[50, 50, 3]]), np.array([[50.0], [50.0], [3.0]]).T])
+def test_an_arena_of_ones_own_has_circles_in_any_form(circles: Any) -> None:
+    own = Arena("own", circles, (1.0, 1.0), (80.0, 80.0), (0.0, 0.0, 100.0, 100.0))
+    found = book(arena=own).course(0, 0).arena.circles
+    assert found.tolist() == [[50.0, 50.0, 3.0]] and found.dtype == np.float64 and found.flags.c_contiguous
+
+
+@pytest.mark.parametrize("circles", [[[50, 50]], [50, 50, 3], None, [[50, np.nan, 3]], [[50, 50, -3]]])
+def test_an_arena_of_ones_own_with_circles_that_are_none_is_refused(circles: Any) -> None:
+    own = Arena("own", circles, (1.0, 1.0), (80.0, 80.0), (0.0, 0.0, 100.0, 100.0))
+    with pytest.raises(MapError, match=r"circle.* needed"):
+        book(arena=own)
+
+
 def test_a_torn_barn_file_is_refused(tmp_path: Any) -> None:
     torn = tmp_path / "torn.npz"
     torn.write_bytes(b"PK\x03\x04 and no more")

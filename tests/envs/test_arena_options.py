@@ -1,5 +1,8 @@
 from dataclasses import fields
+from pathlib import Path
+from typing import Any
 
+import numpy as np
 import pytest
 
 from lidarena.envs import ArenaEnv
@@ -50,3 +53,31 @@ def test_absurd_lengths_and_times_are_refused(name: str, value: object) -> None:
 def test_absurd_densities_are_refused(density: object) -> None:
     with pytest.raises(ConfigError, match="density"):
         ArenaOptions.checked({"density": density})
+
+
+@pytest.mark.parametrize(
+    ("keywords", "says"),
+    [
+        ({"arena": "yang", "path": "barn.npz"}, "path = 'barn.npz' is for 'barn' arenas only, not for arena = 'yang'"),
+        ({"arena": "u_trap", "density": 0.1}, "density = 0.1 is for 'random' arenas"),
+        ({"arena": "random:5?density=0.2", "density": 0.1}, "density = 0.1 is for 'random' arenas without one"),
+        ({"arena": "office", "goal": 5}, "goal = 5 must be two numbers"),
+        ({"arena": "office", "goal": [[1, 2]]}, r"goal = \[\[1, 2\]\] must be two numbers"),
+        ({"start": "ab"}, "start = 'ab' must be two numbers"),
+    ],
+)
+def test_what_no_arena_would_look_at_is_refused(keywords: dict[str, Any], says: str) -> None:
+    with pytest.raises(ConfigError, match=says) as refusal:
+        ArenaOptions.checked(keywords)
+    assert "\n" not in str(refusal.value)
+
+
+def test_what_one_of_several_arenas_looks_at_is_allowed() -> None:
+    ArenaOptions.checked({"arena": ["yang", "barn:4"], "path": "barn.npz"})
+    ArenaOptions.checked({"arena": ["u_trap", "random:5"], "density": 0.1, "goal": np.array([50, 60])})
+
+
+def test_files_may_be_given_as_paths() -> None:
+    options = ArenaOptions.checked({"arena": "barn", "path": Path("barn.npz")})
+    assert options.path == "barn.npz"
+    assert ArenaOptions.checked({"arena": Path("hall.yaml"), "goal": (1, 2)}).specs == ["hall.yaml"]

@@ -149,6 +149,8 @@ def test_a_movingai_scenario_says_who_goes_where(tmp_path):
     _, infos = env.reset(seed=0)
     assert infos["robot_0"]["goal"].tolist() == [3.5, 0.5]
     assert env.episodes.core.starts[0, 0].tolist() == [0.5, 2.5]
+    paths = make(map=tmp_path / "hall.map", robots=1, places=tmp_path / "hall.scen")  # a Path is as good as its text
+    assert paths.reset(seed=0)[1]["robot_0"]["goal"].tolist() == [3.5, 0.5]
     with pytest.raises(ScenarioError, match="starts for 1 robots; 2 are asked for"):
         make(map=str(tmp_path / "hall.map"), robots=2, places=str(tmp_path / "hall.scen"))
     (tmp_path / "torn.scen").write_text("version 1\n0\thall.map\t4\n")
@@ -176,6 +178,7 @@ def test_a_movingai_scenario_says_who_goes_where(tmp_path):
         ({"places": "anywhere"}, ConfigError, "places = 'anywhere'"),
         ({"starts": [(1, 1)]}, ConfigError, "starts and goals are given together"),
         ({"max_cycles": 0}, ConfigError, "max_episode_steps = 0"),
+        ({"max_episode_steps": 50}, ConfigError, "'max_episode_steps' is called 'max_cycles' here"),
         ({"map": "env1", "places": "predefined"}, ConfigError, "no predefined places"),
         ({"robots": 30}, ConfigError, "has starts for 24; at most 24 robots"),
         ({"map": "passing"}, ConfigError, "robots = 4, but map 'passing' has starts for 2"),
@@ -217,6 +220,9 @@ def test_actions_that_make_no_sense_are_refused():
         ({"robot_0": good, "robot_1": good * np.nan}, "'robot_1' is NaN or outside"),
         ({"robot_0": good, "robot_1": good + 2}, "'robot_1' is NaN or outside"),
         ({"robot_0": good, "robot_1": 1}, "'robot_1' is not of its action space"),
+        ({"robot_0": good, "robot_1": [[1], [1, 2]]}, "'robot_1' is not of its action space"),
+        ([good, good], "actions of type list were given; a dictionary by agent is needed"),
+        (None, "actions of type NoneType"),
     ):
         with pytest.raises(ActionError, match=sentence):
             env.step(actions)

@@ -75,6 +75,13 @@ def test_who_has_arrived_and_who_has_crashed_is_seen() -> None:
     assert (picture(crashed=one)[:28] != picture()[:28]).any()  # the header tells it in words
 
 
+def test_who_has_arrived_is_numbered_once() -> None:
+    """Robot 3 at its goal was labelled 33."""
+    beside = tuple(GOALS[0] + (0.36, 0.2))
+    assert count(near(picture(), beside, 0.1), COLOURS[0]) > 0
+    assert count(near(picture(arrived=np.array([True, False])), beside, 0.1), COLOURS[0]) == 0
+
+
 @pytest.mark.parametrize("name", ["passing", "blocked", "unstructured"])
 def test_every_map_has_room_for_its_words(name: str) -> None:
     env = corridor_v0.parallel_env(map=name, robots=2, render_mode="rgb_array")

@@ -97,6 +97,7 @@ def test_a_count_of_none_is_refused(name):
         ({"rho0": 3.0}, "no parameter 'rho0'; did you mean 'rho_0'"),
         ({"arrival_radius": 0.01}, "gamma / 2"),
         ({"k": None}, "k = None"),
+        ({"ways": 4}, "ways = 4; a whole number from 1 to 3"),
     ],
 )
 def test_other_bad_parameters_are_refused_in_a_sentence(overrides, says):
@@ -108,6 +109,8 @@ def test_other_bad_parameters_are_refused_in_a_sentence(overrides, says):
 def test_unknown_presets_are_refused():
     with pytest.raises(ConfigError, match="did you mean 'robust'"):
         field_parameters("robsut")
+    with pytest.raises(ConfigError, match=r"preset .*'paper'.* is not known"):
+        field_parameters(["paper"])
 
 
 def test_the_balance_is_where_the_docstring_says():

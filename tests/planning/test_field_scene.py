@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 
 from lidarena.planning.disc_clearance import segment_is_free
 from lidarena.planning.field_scene import FieldScene, make_scene
+from lidarena.world.refusals import MapError
 from tests.planning.circle_scenes import scattered
 
 
@@ -98,3 +99,15 @@ def test_the_callers_circles_stay_as_they_are() -> None:
     circles = np.array([(5.0, 5.0, 1.0)])
     make_scene(circles, (0, 0), (9, 9), 0.7).keeping(1.0)
     assert circles.tolist() == [[5.0, 5.0, 1.0]]
+
+
+def test_columns_that_were_turned_into_rows_are_laid_out_for_the_kernels() -> None:
+    rows = np.array([(5.0, 5.0, 1.0), (8.0, 2.0, 0.5)])
+    turned = np.array([rows[:, 0], rows[:, 1], rows[:, 2]]).T  # else kernels are compiled anew, for ten seconds
+    found = make_scene(turned, (0, 0), (9, 9))
+    assert found.discs.tolist() == rows.tolist() and found.discs.flags.c_contiguous
+
+
+def test_a_start_that_touches_an_obstacle_is_said_to_touch_it() -> None:
+    with pytest.raises(MapError, match=r"the start \(4, 5\) touches the obstacle at \(5, 5\)"):
+        make_scene([(5, 5, 1)], (4, 5), (9, 9))

@@ -53,6 +53,21 @@ def too_close(row: float, col: float, rows: float, cols: float, apart: float) ->
     return dr * dr + dc * dc < max(apart * apart - 1e-9, 1e-9)
 
 
+def _conflicting_bits(move: int, apart: float, connectivity: int) -> NDArray[np.int64]:
+    """Bits of the other's moves that conflict with ``move``, (2 r + 1, 2 r + 1) by where the other one stands."""
+    reach = math.ceil(apart) + 2
+    offsets = np.arange(-reach, reach + 1, dtype=np.float64)
+    bits = np.zeros((len(offsets), len(offsets)), np.int64)
+    for other in range(connectivity + 1):
+        rows, cols = (MOVES[other] - MOVES[move]).astype(np.float64)
+        square = max(rows * rows + cols * cols, CLOSE)
+        along = -(offsets[:, None] * rows + offsets[None, :] * cols) / square
+        when = np.clip(along, 0.0, 1.0)
+        near = (offsets[:, None] + when * rows) ** 2 + (offsets[None, :] + when * cols) ** 2
+        bits |= np.where(near < max(apart * apart - CLOSE, CLOSE), 1 << other, 0)
+    return bits
+
+
 def conflicting_moves(apart: float, connectivity: int) -> dict[int, dict[tuple[int, int], int]]:
     """For each move of one robot: which moves of another conflict with it, by where the other one stands.
 
@@ -63,20 +78,11 @@ def conflicting_moves(apart: float, connectivity: int) -> dict[int, dict[tuple[i
     Returns:
         ``{move: {(row, column) of the other's cell seen from the robot's: bits of the other's moves}}``.
     """
-    reach = math.ceil(apart) + 2
-    offsets = np.arange(-reach, reach + 1, dtype=np.float64)
     table: dict[int, dict[tuple[int, int], int]] = {}
     for move in range(connectivity + 1):
-        found: dict[tuple[int, int], int] = {}
-        for other in range(connectivity + 1):
-            rows, cols = (MOVES[other] - MOVES[move]).astype(np.float64)
-            square = max(rows * rows + cols * cols, CLOSE)
-            along = -(offsets[:, None] * rows + offsets[None, :] * cols) / square
-            when = np.clip(along, 0.0, 1.0)
-            near = (offsets[:, None] + when * rows) ** 2 + (offsets[None, :] + when * cols) ** 2
-            for row, col in np.argwhere(near < max(apart * apart - CLOSE, CLOSE)) - reach:
-                found[int(row), int(col)] = found.get((int(row), int(col)), 0) | 1 << other
-        table[move] = found
+        bits = _conflicting_bits(move, apart, connectivity)
+        reach = len(bits) // 2
+        table[move] = {(int(r) - reach, int(c) - reach): int(bits[r, c]) for r, c in np.argwhere(bits)}
     return table
 
 
@@ -92,7 +98,11 @@ def footprints(apart: float, connectivity: int, stride: int) -> tuple[NDArray[np
         Where each move's entries begin and the last's end (connectivity + 2,); entries (n, 2): offset in the flattened
         padded grid, bits of the moves.
     """
-    table = conflicting_moves(apart, connectivity)
-    begins = np.cumsum([0, *(len(entries) for entries in table.values())]).astype(np.int64)
-    flat = [(row * stride + col, bits) for entries in table.values() for (row, col), bits in entries.items()]
-    return begins, np.array(flat, dtype=np.int64).reshape(-1, 2)
+    parts = []
+    for move in range(connectivity + 1):
+        bits = _conflicting_bits(move, apart, connectivity)
+        rows, cols = np.nonzero(bits)
+        reach = len(bits) // 2
+        parts.append(np.stack([(rows - reach) * stride + cols - reach, bits[rows, cols]], axis=1))
+    begins = np.cumsum([0, *(len(part) for part in parts)]).astype(np.int64)
+    return begins, np.concatenate(parts).astype(np.int64)

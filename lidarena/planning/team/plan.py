@@ -1,6 +1,8 @@
 """One call for every planner of teams: ``plan_team`` on a bare array."""
 
-from typing import Literal, get_args
+import math
+from functools import cache
+from typing import Any, Literal, get_args
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -64,10 +66,13 @@ def plan_team(
             to be, the paper's P_t; for ``prioritized_astar``.
 
     Raises:
-        TeamError: A start or goal is outside of the grid, in a wall or too near to one, shared or overlapping, a goal
-            cannot be reached, there are more starts than goals or the reverse, or an option is out of range.
+        TeamError: The grid, starts or goals are no arrays of this form; a start or goal is outside of the grid, in a
+            wall or too near to one, shared or overlapping; a goal cannot be reached, there are more starts than goals
+            or the reverse, or an option is out of range.
     """
-    _check_options(method, connectivity, radius, time_limit, iterations)
+    _check_options(method, connectivity, radius, time_limit, iterations, seed)
+    if math.isfinite(time_limit):
+        _load_kernels(method)
     budget = Budget(time_limit, iterations)
     blocked = _checked_grid(grid)
     first, final = _checked_cells(starts, goals, blocked)
@@ -82,6 +87,14 @@ def plan_team(
     plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), strays)
     traffic.close()
     return plan
+
+
+@cache
+def _load_kernels(method: Method) -> None:
+    """Plan for two robots that swap places: compiling and loading kernels is not to be taken from a time limit."""
+    options: dict[str, Any] = {"cell_costs": np.zeros((3, 3))} if method == "prioritized_search" else {}
+    ends = [(1, 0), (1, 2)]
+    plan_team(np.zeros((3, 3), np.bool_), ends, ends[::-1], method, time_limit=math.inf, iterations=2, **options)
 
 
 def _plan(
@@ -108,21 +121,37 @@ def _plan(
             return plan_certified(traffic, time_limit, iterations, rng)
 
 
-def _check_options(method: str, connectivity: int, radius: float, time_limit: float, iterations: int | None) -> None:
+def _check_options(
+    method: str, connectivity: object, radius: object, time_limit: object, iterations: object, seed: object
+) -> None:
     if method not in get_args(Method):
         raise TeamError(f"there is no method {method!r}{suggest(str(method), get_args(Method))}")
-    if connectivity not in (4, 8):
+    if not _is_number(connectivity) or connectivity not in (4, 8):
         raise TeamError(f"connectivity {connectivity!r} is not possible; 4 or 8 neighbours are")
-    if not 0.0 <= radius <= 100.0:
-        raise TeamError(f"a radius of {radius} cells is not possible; 0 to 100 is allowed")
-    if not time_limit > 0.0:
-        raise TeamError(f"a time limit of {time_limit} s is not possible; a positive number is needed")
-    if iterations is not None and iterations < 0:
-        raise TeamError(f"{iterations} iterations are not possible; 0 or more are")
+    if not _is_number(radius) or not 0.0 <= radius <= 100.0:  # type: ignore[operator]
+        raise TeamError(f"a radius of {radius!r} cells is not possible; 0 to 100 is allowed")
+    if not _is_number(time_limit) or not time_limit > 0.0:  # type: ignore[operator]
+        raise TeamError(f"a time limit of {time_limit!r} s is not possible; a positive number is needed")
+    for name, value in (("iterations", iterations), ("a seed", seed)):
+        whole = isinstance(value, int | np.integer) and value >= 0
+        if not whole and not (value is None and name == "iterations"):
+            raise TeamError(f"{name} of {value!r} is not possible; a whole number, 0 or more, is needed")
+
+
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float | np.integer | np.floating)
+
+
+def _array_of(name: str, given: ArrayLike) -> NDArray[Any]:
+    """The array that was given; refused where its rows differ in length."""
+    try:
+        return np.asarray(given)
+    except (TypeError, ValueError):
+        raise TeamError(f"rows of different lengths were given as the {name}; an array is needed") from None
 
 
 def _checked_grid(grid: ArrayLike) -> NDArray[np.bool_]:
-    blocked = np.asarray(grid)
+    blocked = _array_of("grid", grid)
     if blocked.ndim != 2 or blocked.size == 0:
         raise TeamError(f"the grid has shape {blocked.shape}; (rows, columns) with at least one cell is needed")
     if blocked.dtype != np.bool_ and not np.isin(blocked, (0, 1)).all():
@@ -135,10 +164,11 @@ def _checked_cells(
 ) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     cells = []
     for kind, given in (("start", starts), ("goal", goals)):
-        array = np.asarray(given)
+        array = _array_of(f"{kind}s", given)
         if array.ndim != 2 or array.shape[1] != 2 or not len(array) or not np.issubdtype(array.dtype, np.integer):
             raise TeamError(
-                f"the {kind}s have shape {array.shape} and type {array.dtype}; whole numbers (robots, 2) are needed"
+                f"the {kind}s have shape {array.shape} and type {array.dtype}; "
+                "whole numbers (robots, 2), for at least one robot, are needed"
             )
         cells.append(array.astype(np.int64))
         for robot, (row, col) in enumerate(array):

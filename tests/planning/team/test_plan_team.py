@@ -1,5 +1,6 @@
 import itertools
 import math
+import time
 
 import numpy as np
 import pytest
@@ -7,6 +8,9 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning import plan_team, validate_plan
+from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.plan import _load_kernels
+from lidarena.world.refusals import TeamError
 from tests.planning.team.problems import Problem, brute_force, parse, plan, problems
 
 METHODS = ["prioritized_astar", "coordination", "prioritized_search", "cbs"]
@@ -232,6 +236,14 @@ DOOR[3, 4] = False
         (OPEN, [(0, 0)], [(1, 1)], {"connectivity": 6}, "4 or 8"),
         (OPEN, [(0, 0)], [(1, 1)], {"radius": math.nan}, "radius of nan"),
         (OPEN, [(0, 0)], [(1, 1)], {"time_limit": 0.0}, "positive"),
+        (OPEN, [(0, 0)], [(1, 1)], {"time_limit": None}, "time limit of None"),
+        (OPEN, [(0, 0)], [(1, 1)], {"radius": "1"}, "radius of '1'"),
+        (OPEN, [(0, 0)], [(1, 1)], {"connectivity": np.array([4, 8])}, "4 or 8"),
+        (OPEN, [(0, 0)], [(1, 1)], {"iterations": 1.5}, "iterations of 1.5 is not possible"),
+        (OPEN, [(0, 0)], [(1, 1)], {"seed": -1}, "a seed of -1 is not possible"),
+        ([[0, 1], [0]], [(0, 0)], [(1, 0)], {}, "rows of different lengths were given as the grid"),
+        (OPEN, [(0, 0), (1,)], [(1, 0), (1, 1)], {}, "rows of different lengths were given as the starts"),
+        (OPEN, np.empty((0, 2), int), np.empty((0, 2), int), {}, "at least one robot"),
         (OPEN, [(0, 0)], [(1, 1)], {"iterations": -1}, "0 or more"),
         (OPEN, [(0, 0)], [(1, 1)], {"cell_costs": np.zeros((2, 2))}, "cell_costs have shape"),
         (OPEN, [(0, 0)], [(1, 1)], {"cell_costs": np.full((4, 6), -1.0)}, "0 to 64"),
@@ -242,8 +254,29 @@ DOOR[3, 4] = False
     ],
 )
 def test_bad_input_is_refused_in_one_sentence(grid, starts, goals, options, says):
-    from lidarena.world.refusals import TeamError
-
     with pytest.raises(TeamError, match=says) as caught:
         plan_team(grid, starts, goals, **options)
     assert "\n" not in str(caught.value)
+
+
+def test_a_radius_larger_than_the_grid_is_refused_at_once():
+    begun = time.perf_counter()
+    with pytest.raises(TeamError, match="nearer to a wall than its radius of 99"):
+        plan_team(OPEN, [(0, 0)], [(1, 1)], radius=99)
+    assert time.perf_counter() - begun < 20.0  # it took more than a minute
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_loading_kernels_is_not_taken_from_the_time_limit(method, monkeypatch):
+    limits = []
+
+    class Noted(Budget):
+        def __init__(self, seconds, iterations=None):
+            limits.append(seconds)
+            super().__init__(seconds, iterations)
+
+    monkeypatch.setattr("lidarena.planning.team.plan.Budget", Noted)
+    _load_kernels.cache_clear()
+    for _ in range(2):
+        plan_team(OPEN, [(0, 0)], [(1, 1)], method, time_limit=5.0)
+    assert limits == [math.inf, 5.0, 5.0]
