@@ -48,6 +48,7 @@ class TraditionalLidarField:
         away = np.hypot(*(points - pose[:2]).T)
         radii = np.minimum(float(info["robot_radius"]), _CLOSE * away)  # obstacles, grown by the robot's radius
         walk = self._downhill(np.column_stack([points, radii]), pose[:2], goal)
+        self._wheel.show(walk)
         net = float(np.hypot(*(walk[-1] - pose[:2])))
         stuck = len(walk) == 2 * _SMALL_STEPS + 1 and net < _NET * step
         self.finished = stuck and float(np.hypot(*(goal - pose[:2]))) > 2.0 * step

@@ -75,13 +75,23 @@ def test_a_policy_shows_its_own_plan_until_the_episode_ends() -> None:
     assert np.array_equal(env.render(), field)
 
 
-def test_planners_show_what_they_drive() -> None:
+def picture_after_a_decision(name: str) -> np.ndarray:
     env = ArenaEnv(arena="yang:u", render_mode="rgb_array")
+    observation, info = env.reset(seed=0)
+    policy = make(name, env)
+    policy.reset(seed=0)
+    policy.act(observation, info)
+    picture = env.render()
+    assert picture is not None
+    return picture[44:-64]
+
+
+def test_planners_show_what_they_drive() -> None:
     for name, smooths in (("astar", False), ("apf_improved", True), ("apf_improved_lidar", False)):
-        observation, info = env.reset(seed=0)
-        policy = make(name, env)
-        policy.reset(seed=0)
-        policy.act(observation, info)
-        picture = env.render()
-        assert picture is not None and count(picture[44:-64], BLUE) > 100, name
-        assert (count(picture[44:-64], ORANGE) > 0) == smooths, name
+        picture = picture_after_a_decision(name)
+        assert count(picture, BLUE) > 100, name
+        assert (count(picture, ORANGE) > 0) == smooths, name
+
+
+def test_who_plans_no_farther_than_two_steps_shows_no_more() -> None:
+    assert count(picture_after_a_decision("apf_lidar"), BLUE) < 100
