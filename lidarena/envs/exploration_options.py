@@ -6,6 +6,7 @@ from dataclasses import dataclass, fields
 from typing import Any
 
 from lidarena.envs.coverage import START_MARGIN
+from lidarena.envs.keyword_checks import plain
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
 from lidarena.world.refusals import ConfigError, MapError, suggest
 
@@ -89,7 +90,7 @@ class ExplorationOptions:
         for name in keywords:
             if name not in names:
                 raise ConfigError(f"unknown keyword {name!r} of an exploration environment{suggest(name, names)}")
-        options = cls(**keywords)
+        options = cls(**plain(keywords))
         for name, allowed in _CHOICES.items():
             _check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():

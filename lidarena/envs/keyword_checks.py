@@ -5,6 +5,8 @@ import os
 from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
+import numpy as np
+
 from lidarena.world.refusals import ConfigError, suggest
 
 
@@ -21,8 +23,14 @@ def check_names(what: str, keywords: Mapping[str, Any], allowed: Iterable[str]) 
 
 
 def plain(keywords: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keywords with every path as the string that it stands for."""
-    return {name: os.fspath(value) if isinstance(value, os.PathLike) else value for name, value in keywords.items()}
+    """Return the keywords with every path as the string, and every NumPy scalar as the number, that it stands for."""
+    return {name: _plain(value) for name, value in keywords.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    return value.item() if isinstance(value, np.generic) else value
 
 
 def check_choice(name: str, value: Any, allowed: Sequence[str | None]) -> None:

@@ -1,8 +1,10 @@
 import math
 from typing import Any
 
+import numpy as np
 import pytest
 
+from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv
 from lidarena.envs.keyword_checks import check_choice, check_names, check_range, check_switch
 from lidarena.world.refusals import ConfigError
 
@@ -43,3 +45,11 @@ def test_a_fraction_is_no_whole_number() -> None:
 def test_a_switch_is_true_or_false(value: Any) -> None:
     with pytest.raises(ConfigError, match=r"known = .* must be true or false"):
         check_switch("known", value)
+
+
+@pytest.mark.parametrize("make", [ExplorationEnv, ArenaEnv, CorridorCentralEnv])
+def test_numpys_numbers_are_numbers(make: Any) -> None:
+    env = make(max_episode_steps=np.int64(3), lidar_noise=np.float32(0.0))
+    env.reset(seed=0)
+    steps = [env.step(env.action_space.sample())[2:4] for _ in range(3)]
+    assert steps[-1][1] and not steps[0][1]
