@@ -15,9 +15,12 @@ from lidarena.envs.generator_state import generator_from_words, generator_words
 from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
-_WEIGHTS = {"path": 1.0, "uncertainty": 3.0, "coverage": 5.0, "collision": 3.0}
+_WEIGHTS = {"path": 1.0, "uncertainty": 2.7, "coverage": 5.0, "collision": 3.0}
 _PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]; paths are weighed against it."""
+_ORDINARY_PATH = 31.0
+"""Certainty is weighed as given in a world of this usual path [m], and by its power 1.5 more in larger ones, in which it
+is lost sooner."""
 _USUAL, _USUAL_STEPS = 1.3e-4, 50
 """The mean of D-optimality begins as if it had been this for so many steps; the certain start says little."""
 _LARGEST = 30.0
@@ -47,8 +50,8 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
     ## Rewards
 
     Sums over the decision periods of the step: coverage · Δcompleteness - path · Δpath / (0.55/m · area of the floor
-    plan) - uncertainty · Δ(mean of ln D since the start), and - collision at a collision. Over an episode this adds up
-    to what a comparison measures. The weights are the keyword ``weights``.
+    plan) - uncertainty · (area / 56 m²)^1.5 · Δ(mean of ln D since the start), and - collision at a collision. Over an
+    episode this adds up to what a comparison measures. The weights are the keyword ``weights``.
 
     ## Episode end
 
@@ -103,6 +106,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         self._seen = self._world.reset()
         x_min, y_min, x_max, y_max = self._world.get_wrapper_attr("floorplan").bounds
         self._usual_path = _PATH_PER_AREA * (x_max - x_min) * (y_max - y_min)
+        self._size = self._usual_path / _ORDINARY_PATH
         self._log_mean, self._steps = math.log(_USUAL), 0
         self._policy.reset()
         self._choice = None
@@ -155,7 +159,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         return float(
             weights["coverage"] * (info["completeness"] - before["completeness"])
             - weights["path"] * (info["path_length"] - before["path_length"]) / self._usual_path
-            - weights["uncertainty"] * (self._log_mean - mean)
+            - weights["uncertainty"] * self._size**1.5 * (self._log_mean - mean)
             - weights["collision"] * info["collision"]
         )
 
