@@ -19,8 +19,8 @@ _WEIGHTS = {"path": 1.0, "uncertainty": 2.7, "coverage": 5.0, "collision": 3.0}
 _PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]; paths are weighed against it."""
 _ORDINARY_PATH = 31.0
-"""Certainty is weighed as given in a world of this usual path [m], and by its power 1.5 more in larger ones, in which it
-is lost sooner."""
+"""Certainty is weighed as given in a world of this usual path [m], and by the ratio's power 1.5 more in larger ones, in
+which it is lost sooner."""
 _USUAL, _USUAL_STEPS = 1.3e-4, 50
 """The mean of D-optimality begins as if it had been this for so many steps; the certain start says little."""
 _LARGEST = 30.0
