@@ -50,8 +50,16 @@ class ExplorationEnv(SingleWorld):
 
     ``observation="sectors"``, ``Box(0, 1, (38,), float32)``: the same, except that 0–35 are the nearest hits in 36
     sectors of 10 degrees, the first one centred straight ahead, counter-clockwise. A wall's end between two of the five
-    beams cannot hide from it. ``observation="compass"``, ``Box(0, 1, (74,), float32)``: after these, 36–71 say to how
-    much of the edge of the known map each sector leads, around walls, the nearest counting most (``feel_frontiers``).
+    beams cannot hide from it.
+
+    ``observation="compass"``, ``Box(0, 1, (76,), float32)``, also says which way the edge of the known map lies:
+
+    | Num   | Observation |
+    |-------|-------------|
+    | 0–35  | 0.12 m over the nearest hit in each of the same sectors |
+    | 36–71 | to how much of the edge each sector leads, around walls, the nearest counting most (``feel_frontiers``) |
+    | 72–73 | (1 + cos) / 2, (1 + sin) / 2 of the mean direction of these; 0.5, 0.5 where there is none |
+    | 74–75 | as 5 and 6 above |
 
     ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
 

@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
-from lidarena.envs.frontier_compass import feel_frontiers
+from lidarena.envs.frontier_compass import feel_frontiers, point_needles
+from lidarena.world.floorplan import START_CLEARANCE
 from lidarena.world.kernels import leaf
 
 FRONT_BEAMS = (0, 45, 90, 315, 270)
@@ -72,15 +73,21 @@ class SectorObserver(PaperObserver):
         return nearest_hits(core.sensors.scans[:, 0]) / core.beam.max_range
 
 
-class CompassObserver(SectorObserver):
-    """The sectors' nearest hits, and after them how much of the map's edge each leads to, see ``feel_frontiers``."""
+class CompassObserver(PaperObserver):
+    """The paper's state with walls as near as they are, and which way to drive, in place of five beams.
 
-    looks = 2 * SECTORS
+    First how near the nearest hit in each sector is, ``START_CLEARANCE`` over the range: a wall far off, which says
+    little, hardly shows, whereas the range itself differs most there. Then how much of the map's edge each sector leads
+    to, see ``feel_frontiers``, and their mean direction like a compass needle, (1 + cos) / 2 and (1 + sin) / 2.
+    """
+
+    looks = 2 * SECTORS + 2
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
         nearest = nearest_hits(core.sensors.scans[:, 0])
         edge = feel_frontiers(core.maps.occupancy, core.maps.origin, core.estimate, nearest, RESOLUTION)
-        return np.concatenate([nearest / core.beam.max_range, edge], axis=1)
+        near = np.float32(START_CLEARANCE) / np.maximum(nearest, np.float32(START_CLEARANCE))
+        return np.concatenate([near, edge, point_needles(edge)], axis=1)
 
 
 class MapObserver:

@@ -161,3 +161,34 @@ def feel_frontiers(
     counter = np.zeros(1, np.int64)
     on_threads(len(out), lambda _: _feel(occupancy, origins, poses, ranges, resolution, out, counter))
     return out
+
+
+def point_needles(edge: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The mean direction of what ``feel_frontiers`` says, as a compass needle shows it.
+
+    Args:
+        edge: (worlds, sectors), not negative.
+
+    Returns:
+        (worlds, 2) in [0, 1]: (1 + x) / 2 and (1 + y) / 2, x ahead and y to the left, of the mean of the sectors'
+        directions weighted by ``edge``; shorter than a unit where they disagree, 0.5 and 0.5 where all are 0.
+    """
+    needles = np.empty((len(edge), 2), np.float32)
+    _point(edge, needles)
+    return needles
+
+
+@leaf
+def _point(edge: NDArray[np.float32], needles: NDArray[np.float32]) -> None:
+    """A loop: NumPy's product of matrices would round a world's sum as the size of the batch has it."""
+    sectors = edge.shape[1]
+    for w in range(edge.shape[0]):
+        x = y = total = 0.0
+        for k in range(sectors):
+            angle = 2.0 * math.pi / sectors * k
+            x += edge[w, k] * math.cos(angle)
+            y += edge[w, k] * math.sin(angle)
+            total += edge[w, k]
+        scale = 0.5 / total if total > 0.0 else 0.0
+        needles[w, 0] = min(max(0.5 + scale * x, 0.0), 1.0)
+        needles[w, 1] = min(max(0.5 + scale * y, 0.0), 1.0)

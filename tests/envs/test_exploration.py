@@ -241,3 +241,18 @@ def test_patience_ends_an_episode_that_finds_nothing_new() -> None:
 def test_absurd_patience_is_refused(value: object) -> None:
     with pytest.raises(ConfigError, match="patience"):
         gym.make("lidarena/Env1-v0", patience=value)
+
+
+def test_the_compass_shows_the_same_hits_as_the_sectors_and_its_needle_turns_with_the_robot() -> None:
+    observed = {}
+    for kind in ("sectors", "compass"):
+        env = gym.make("lidarena/Env3-v0", observation=kind)
+        env.reset(seed=5)
+        observed[kind] = [env.step(action)[0] for action in (0, 1, 1, 1, 2, 0)]
+    for sectors, compass in zip(observed["sectors"], observed["compass"], strict=True):
+        assert compass.shape == (76,)
+        near = np.minimum(0.12 / np.maximum(3.5 * sectors[:36], 1e-6), 1.0)
+        np.testing.assert_allclose(compass[:36], near, rtol=1e-5)
+        np.testing.assert_array_equal(compass[74:], sectors[36:])
+        way = np.exp(2j * np.pi / 36 * np.arange(36)) @ compass[36:72] / compass[36:72].sum()
+        np.testing.assert_allclose(compass[72:74], [0.5 + 0.5 * way.real, 0.5 + 0.5 * way.imag], atol=1e-5)

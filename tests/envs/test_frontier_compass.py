@@ -8,7 +8,7 @@ import pytest
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration_core import RESOLUTION
-from lidarena.envs.frontier_compass import feel_frontiers
+from lidarena.envs.frontier_compass import feel_frontiers, point_needles
 
 SECTORS = 36
 SIDE = 2 * RESOLUTION
@@ -112,3 +112,19 @@ def test_worlds_do_not_depend_on_each_other() -> None:
     for w in range(7):
         alone = feel_frontiers(grids[w : w + 1], origins[w : w + 1], poses[w : w + 1], ranges[w : w + 1], RESOLUTION)
         assert alone[0].tobytes() == together[w].tobytes()
+
+
+def test_the_needle_points_where_the_edge_lies() -> None:
+    for k in range(SECTORS):
+        edge = np.zeros((1, SECTORS), np.float32)
+        edge[0, k] = 0.3
+        x, y = 2.0 * point_needles(edge)[0] - 1.0
+        assert math.hypot(x, y) == pytest.approx(1.0, abs=1e-6)
+        assert math.cos(math.atan2(y, x) - 2.0 * math.pi * k / SECTORS) == pytest.approx(1.0, abs=1e-6)
+
+
+def test_the_needle_is_the_mean_of_all_directions_and_rests_where_there_is_none() -> None:
+    edge = np.zeros((3, SECTORS), np.float32)
+    edge[0, [9, 27]] = 0.7  # left and right
+    edge[1, [0, 9]] = 0.2, 0.6
+    np.testing.assert_allclose(point_needles(edge), [[0.5, 0.5], [0.625, 0.875], [0.5, 0.5]], atol=1e-6)
