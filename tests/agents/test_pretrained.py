@@ -36,6 +36,18 @@ def test_a_shipped_agent_drives(name: str) -> None:
         assert info["distance"] < distance
 
 
+def test_the_compass_agent_explores_a_world_that_it_was_not_trained_in() -> None:
+    policy = agents.load("pretrained:compass")
+    env = gym.make("lidarena/Env2-v0", observation="compass", max_episode_steps=None)
+    observation, info = env.reset(seed=4)
+    policy.reset(seed=0)
+    ended = False
+    while not ended:
+        observation, _, terminated, truncated, info = env.step(policy.act(observation, info))
+        ended = terminated or truncated or info["time"] > 600.0
+    assert info["completeness"] >= 0.95 and not info["collision"]
+
+
 def test_an_agent_that_is_not_shipped_is_refused() -> None:
     with pytest.raises(PolicyFileError, match=r"'completness' is shipped.*completeness"):
         agents.load("pretrained:completness")
