@@ -84,7 +84,7 @@ def overview(cells: Sequence[Sequence[Cell]]) -> "Figure":
     shapes = [(box[3] - box[2]) / (box[1] - box[0]) for box in boxes]
     heights = [PANEL * min(1.6, max(0.5, shape)) + 0.55 for shape in shapes]
     columns = len(cells[0])
-    figure = _figure(max(PANEL * columns + 0.7, 6.5), sum(heights) + 1.0)
+    figure = _figure(max(PANEL * columns + 0.7, 6.5), sum(heights) + 1.4)
     grid = figure.subplots(len(cells), columns, squeeze=False, gridspec_kw={"height_ratios": heights})
     for row, box, line in zip(cells, boxes, grid, strict=True):
         for place, (cell, axes) in enumerate(zip(row, line, strict=True)):
@@ -294,8 +294,10 @@ def _marker(colour: str, shape: str, label: str) -> Any:
 def _figure(width: float, height: float) -> "Figure":
     """Return a figure that no window system hears of (pyplot is never imported)."""
     from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
 
-    return Figure(figsize=(width, height), dpi=DPI, layout="constrained")
+    # more room than by default: the layout does not see how far the axes' labels hang down into a legend
+    return Figure(figsize=(width, height), dpi=DPI, layout=ConstrainedLayoutEngine(h_pad=0.07))
 
 
 def _save(figure: "Figure", path: Path) -> Path:
