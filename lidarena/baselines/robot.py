@@ -87,7 +87,10 @@ def _beams(observation: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         return scan, np.linspace(0.0, 2.0 * math.pi, len(scan), endpoint=False)
     numbers = np.asarray(observation, np.float64)
     if len(numbers) > SECTORS:
-        return numbers[:SECTORS], np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
+        ranges = numbers[:SECTORS]
+        if len(numbers) > 2 * SECTORS:  # the compass: nearness
+            ranges = np.round(_TOUCH / _MAX_RANGE / ranges, 5)  # free to the largest range is 1, whatever float32 says
+        return ranges, np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
     return numbers[: len(_BEAM_ANGLES)], _BEAM_ANGLES
 
 
