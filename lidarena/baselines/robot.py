@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from lidarena.envs.exploration_observation import SECTORS
 from lidarena.planning.steering import Commands
+from lidarena.world.floorplan import START_CLEARANCE
 from lidarena.world.refusals import ConfigError
 
 FULL_SPEED, TURN_SPEED, TURN_RATE = 0.5, 0.05, 0.3
@@ -88,8 +89,8 @@ def _beams(observation: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     numbers = np.asarray(observation, np.float64)
     if len(numbers) > SECTORS:
         ranges = numbers[:SECTORS]
-        if len(numbers) > 2 * SECTORS:  # the compass: nearness
-            ranges = np.round(_TOUCH / _MAX_RANGE / ranges, 5)  # free to the largest range is 1, whatever float32 says
+        if len(numbers) > 2 * SECTORS:  # the compass: nearness; rounded, as a free beam is to have the range 1
+            ranges = np.round(START_CLEARANCE / _MAX_RANGE / ranges, 5)
         return ranges, np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
     return numbers[: len(_BEAM_ANGLES)], _BEAM_ANGLES
 
