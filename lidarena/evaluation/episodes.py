@@ -1,5 +1,6 @@
 """One episode: drive a policy through an environment and measure it against the truth."""
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from time import perf_counter
@@ -63,7 +64,8 @@ class Episode:
         seed: Of the environment.
         measures: Values by `measures.MEASURES`' names, those of the environment's family, in SI units and fractions;
             NaN where the environment does not report what a measure needs.
-        ending: Why it ended: ``success``, ``collision``, ``out of time`` or ``policy finished``.
+        ending: Why it ended: ``success``, ``collision``, ``out of time``, ``out of patience`` (nothing new for too
+            long) or ``policy finished``.
         progress: Time [s] and completeness after each step, shape (T + 1, 2).
         trace: For pictures, if it was asked for.
     """
@@ -127,6 +129,8 @@ def run_episode(
     if film and (terminated or truncated):
         film(env)
     ending = _ending(terminated, truncated, info)
+    if ending == "out of time" and _is_early(env, len(log.decisions), max_steps):
+        ending = "out of patience"
     trace = _trace(env, policy, info, log) if keep_trace else None
     return Episode(seed, _measures(env, log, info, ending), ending, log.progress(), trace)
 
@@ -146,6 +150,14 @@ def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:
     if terminated:
         return "success"
     return "out of time" if truncated else "policy finished"
+
+
+def _is_early(env: Env, steps: int, max_steps: int | None) -> bool:
+    """Whether an episode that was cut off had steps left: the environment's ``patience`` ended it."""
+    if env.spec is None or env.spec.kwargs.get("patience") is None:
+        return False
+    limit = env.spec.max_episode_steps or env.spec.kwargs.get("max_episode_steps") or 0
+    return steps < min(limit, math.inf if max_steps is None else max_steps)
 
 
 @dataclass

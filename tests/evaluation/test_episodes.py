@@ -21,6 +21,13 @@ class Spy(Driver):
         return super().act(observation, info)
 
 
+class Turner(Driver):
+    """Turns on the spot, as good as, and so finds nothing new in the end."""
+
+    def act(self, observation: Any, info: dict[str, Any]) -> int:
+        return 1
+
+
 def test_the_truth_is_kept_from_the_policy() -> None:
     env = make_env(CORRIDOR, {})
     _, info = env.reset(seed=0)
@@ -96,6 +103,16 @@ def test_time_runs_out(keywords: dict[str, int], steps: int) -> None:
     env = make_env(CORRIDOR, keywords)
     episode = run_episode(env, Driver(env, back=0.5), seed=0)
     assert episode.ending == "out of time" and episode.measures["steps"] == steps
+
+
+@pytest.mark.parametrize(
+    ("patience", "max_steps", "ending"),
+    [(5.0, None, "out of patience"), (None, 40, "out of time"), (9.0, 40, "out of time")],
+)
+def test_patience_that_runs_out_is_told_from_time(patience: float | None, max_steps: int | None, ending: str) -> None:
+    env = make_env("lidarena/Env1-v0", {"patience": patience, "max_episode_steps": 400, "slam": "truth"})
+    episode = run_episode(env, Turner(env), seed=0, max_steps=max_steps)
+    assert episode.ending == ending and episode.measures["steps"] < 400
 
 
 def test_steps_can_be_limited() -> None:
