@@ -156,8 +156,7 @@ def _is_early(env: Env, steps: int, max_steps: int | None) -> bool:
     """Whether an episode that was cut off had steps left: the environment's ``patience`` ended it."""
     if env.spec is None or env.spec.kwargs.get("patience") is None:
         return False
-    limit = env.spec.max_episode_steps or env.spec.kwargs.get("max_episode_steps") or 0
-    return steps < min(limit, math.inf if max_steps is None else max_steps)
+    return steps < min(env.spec.max_episode_steps or math.inf, math.inf if max_steps is None else max_steps)
 
 
 @dataclass
