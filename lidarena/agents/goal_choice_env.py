@@ -1,7 +1,5 @@
 """The world in which the combined agent learns: every step chooses where to explore next, and the driver gets there."""
 
-import math
-from collections.abc import Mapping
 from typing import Any
 
 import gymnasium as gym
@@ -12,17 +10,8 @@ from numpy.typing import NDArray
 from lidarena.baselines.frontier_features import CANDIDATES, FEATURES
 from lidarena.baselines.goal_choice import GoalChoicePolicy
 from lidarena.envs.generator_state import generator_from_words, generator_words
-from lidarena.world.refusals import ConfigError
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
-_WEIGHTS = {"path": 1.0, "uncertainty": 2.7, "coverage": 5.0, "collision": 3.0}
-_PATH_PER_AREA = 0.55
-"""About what ``frontier`` drives for a square metre of floor plan [1/m]; paths are weighed against it."""
-_ORDINARY_PATH = 31.0
-"""Certainty is weighed as given in a world of this usual path [m], and by the ratio's power 1.5 more in larger ones, in
-which it is lost sooner."""
-_USUAL, _USUAL_STEPS = 1.3e-4, 50
-"""The mean of D-optimality begins as if it had been this for so many steps; the certain start says little."""
 _LARGEST = 30.0
 
 
@@ -49,9 +38,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Rewards
 
-    Sums over the decision periods of the step: coverage · Δcompleteness - path · Δpath / (0.55/m · area of the floor
-    plan) - uncertainty · (area / 56 m²)^1.5 · Δ(mean of ln D since the start), and - collision at a collision. Over an
-    episode this adds up to what a comparison measures. The weights are the keyword ``weights``.
+    The exploration world's, ``reward="combined"``, summed over the decision periods of the step.
 
     ## Episode end
 
@@ -59,21 +46,18 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Arguments
 
-    ``weights``: overrides by name; all others are those of ``lidarena/Exploration-v0``.
+    Those of ``lidarena/Exploration-v0``; ``reward`` is ``"combined"`` unless given.
     """
 
     metadata: dict[str, Any] = {"render_modes": []}  # noqa: RUF012 - as gym.Env declares it
 
-    def __init__(self, weights: Mapping[str, float] | None = None, **keywords: Any) -> None:
+    def __init__(self, **keywords: Any) -> None:
         """Make the world.
 
         Raises:
-            ConfigError: An unknown weight, or a keyword that the exploration world refuses.
+            ConfigError: A keyword that the exploration world refuses.
         """
-        for name in weights or {}:
-            if name not in _WEIGHTS:
-                raise ConfigError(f"unknown weight {name!r}, allowed are {', '.join(_WEIGHTS)}")
-        self._weights = _WEIGHTS | dict(weights or {})
+        keywords = {"reward": "combined"} | keywords
         self._world: gym.Env[Any, Any] = gym.make("lidarena/Exploration-v0", disable_env_checker=True, **keywords)
         self._policy = GoalChoicePolicy(self._world, self._answer)
         self._choice: int | None = None
@@ -104,10 +88,6 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         self._began_with = generator_words(self._world.unwrapped.np_random)
         self._choices: list[int] = []
         self._seen = self._world.reset()
-        x_min, y_min, x_max, y_max = self._world.get_wrapper_attr("floorplan").bounds
-        self._usual_path = _PATH_PER_AREA * (x_max - x_min) * (y_max - y_min)
-        self._size = self._usual_path / _ORDINARY_PATH
-        self._log_mean, self._steps = math.log(_USUAL), 0
         self._policy.reset()
         self._choice = None
         return self._drive()
@@ -145,23 +125,11 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
                 return np.clip(needed.features, -_LARGEST, _LARGEST), reward, False, False
             if self._policy.finished:
                 return nothing, reward, True, False
-            before = self._seen[1]
-            observation, _, terminated, truncated, info = self._world.step(action)
+            observation, gain, terminated, truncated, info = self._world.step(action)
             self._seen = observation, info
-            reward += self._gain(before, info)
+            reward += float(gain)
             if terminated or truncated:
                 return nothing, reward, terminated, truncated
-
-    def _gain(self, before: Mapping[str, Any], info: Mapping[str, Any]) -> float:
-        weights, mean = self._weights, self._log_mean
-        self._steps += 1
-        self._log_mean += (math.log(info["d_optimality"]) - mean) / (self._steps + _USUAL_STEPS)
-        return float(
-            weights["coverage"] * (info["completeness"] - before["completeness"])
-            - weights["path"] * (info["path_length"] - before["path_length"]) / self._usual_path
-            - weights["uncertainty"] * self._size**1.5 * (self._log_mean - mean)
-            - weights["collision"] * info["collision"]
-        )
 
     def _info(self) -> dict[str, Any]:
         info = self._seen[1]

@@ -18,7 +18,6 @@ NAMES = (
     "way",  # length of the way to it / 3 m
     "nearest",  # 1 for the nearest
     "size",  # / 3 m
-    "small",  # 1 below explore_lite's 0.5 m
     "turn",  # angle from the heading to the beginning of the way / pi
     "unknown",  # share of unknown cells within 1.5 m of it
     "pursued",  # 1 for the one that is driven to
@@ -32,14 +31,14 @@ NAMES = (
     "uncertainty",  # log10 of D-optimality / 1e-4
     "mean",  # log10 of its geometric mean so far / 1e-4
     "elapsed",  # time / 100 s
+    "known",  # area of the known map / 50 m²
 )
 """The features, in their order."""
 FEATURES = len(NAMES)
-RULE = {"size": 6.0, "way": -0.7, "pursued": 1.5, "small": -4.0, "revisit": -2.0, "end": -2.5}
+RULE = {"size": 6.0, "way": -0.7, "pursued": 1.5, "revisit": -2.0, "end": -2.5}
 """Weights of a sound rule to begin learning from: the largest, as ``frontier``, but rather near."""
 
 _SIGHT, _BEEN, _LEG = 1.5, 2.0, 0.6  # (m)
-_SMALL = 0.5  # (m)
 
 
 @dataclass(frozen=True)
@@ -74,7 +73,7 @@ class Certainty:
     elapsed: float
 
     def features(self) -> tuple[float, float, float]:
-        """The last three of ``NAMES``."""
+        """``uncertainty``, ``mean`` and ``elapsed``."""
         return math.log10(max(self.now, 1e-9) / 1e-4), math.log10(max(self.mean, 1e-9) / 1e-4), self.elapsed / 100.0
 
 
@@ -104,6 +103,7 @@ def describe(
     goals = terrain.around.points(np.array([candidate.cell for candidate in candidates]))
     apart = np.hypot(*(goals[:, None] - goals[None]).transpose(2, 0, 1))
     features = np.zeros((CANDIDATES, FEATURES), np.float32)
+    known = float(np.count_nonzero(terrain.occupancy >= 0)) * terrain.around.resolution**2 / 50.0
     for i, candidate in enumerate(candidates):
         others = np.delete(apart[i], i)
         leg = terrain.around.points(np.array([_first_leg(lengths, *candidate.cell, _LEG)]))[0] - pose[:2]
@@ -111,11 +111,11 @@ def describe(
         been = np.flatnonzero(np.hypot(*(track - goals[i]).T) < _BEEN)
         features[i] = (
             1.0, min(lengths[candidate.cell], 60.0) / 3.0, float(i == 0), candidate.size / 3.0,
-            float(candidate.size < _SMALL), turn / math.pi, _unknown_share(terrain, candidate.cell),
-            float(i == pursued), min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 3,
+            turn / math.pi, _unknown_share(terrain, candidate.cell), float(i == pursued),
+            min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 3,
             (len(track) - been[0]) / 100.0 if len(been) else 0.0, math.dist(goals[i], track[0]) / 3.0,
             float(candidate.frontier is None and not candidate.ends), float(candidate.ends),
-            *certainty.features(),
+            *certainty.features(), known,
         )  # fmt: skip
     return features
 

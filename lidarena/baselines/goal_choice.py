@@ -17,19 +17,21 @@ from lidarena.planning.grid_search import path_costs
 Choose = Callable[[NDArray[np.float32]], int]
 """From the features (CANDIDATES, FEATURES) of the candidates to the number of one."""
 
-_SMALLEST = 0.2  # frontiers below this are left (m), as in the second pass of ``frontier``
+_SMALLEST = 0.5  # frontiers below this are left (m), as by explore_lite: they cost more way than they show
 _BACK = 2.0  # the start is a candidate when the way to it is longer than this (m)
 _SCAN_STEPS = 5  # the uncertainty falls with every scan and grows in between: the least of so many steps is told
 _PERIOD = 3.0  # a choice may be changed so often, and whenever what was chosen has vanished (s)
+_FRUITLESS = 180.0  # after so long without anything new it ends; across a large building takes a minute (s)
+_DITHERS = 30.0  # a robot that has seen nothing new for so long keeps to what it has chosen (s)
 
 
 class GoalChoicePolicy(FrontierPolicy):
     """Explores like ``frontier``, except that ``choose`` says where to go next.
 
-    The candidates are the frontiers of at least 0.2 m, the nearest ones by way, and the place where the robot started:
+    The candidates are the frontiers of at least 0.5 m, the nearest ones by way, and the place where the robot started:
     going back there closes a loop. What is told of each is in :mod:`lidarena.baselines.frontier_features`. ``choose``
-    is asked when the frontier that was driven to has vanished, and every 3 s. When no frontier is left it is asked once
-    more whether to end there or to drive back to the start first.
+    is asked when the frontier that was driven to has vanished, and every 3 s, unless nothing new has come for 30 s.
+    When no frontier is left it is asked once more whether to end there or to drive back to the start first.
 
     Attributes:
         finished: Whether no frontier is left, and the robot is where it wants to end.
@@ -43,8 +45,9 @@ class GoalChoicePolicy(FrontierPolicy):
             choose: Who chooses; a candidate that is not there stands for the nearest.
         """
         self._choose = choose
-        super().__init__(env, min_frontier_size=_SMALLEST, last_frontier_size=_SMALLEST)
+        super().__init__(env, min_frontier_size=_SMALLEST, last_frontier_size=_SMALLEST, last_pass_timeout=_FRUITLESS)
         self._choice_lasts = math.ceil(_PERIOD / self.driver.robot.period)
+        self._dithers = math.ceil(_DITHERS / self.driver.robot.period)
 
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; nothing here is random."""
@@ -99,10 +102,11 @@ class GoalChoicePolicy(FrontierPolicy):
 
     def _goes_on(self, terrain: Terrain) -> bool:
         """Whether what was chosen is still there and too new to be chosen again; the frontier is then the first."""
-        if self._step - self._chosen_at >= self._choice_lasts:
-            return False
         if self._goes_back:
-            return self._go_back(terrain)
+            return self._step - self._chosen_at < self._choice_lasts and self._go_back(terrain)
+        lasts = math.inf if self._step - self._grown_at >= self._dithers else self._choice_lasts
+        if self._step - self._chosen_at >= lasts:
+            return False
         kept = self._pursued(self.frontiers, terrain)
         self.frontiers.sort(key=lambda frontier: frontier is not kept)
         return kept is not None

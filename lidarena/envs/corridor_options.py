@@ -1,11 +1,10 @@
 """Keywords of the multi-robot environments, checked at the border."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
-from lidarena.envs.keyword_checks import plain
+from lidarena.envs.keyword_checks import check_choice, check_names, check_range, check_switch, plain
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.refusals import ConfigError, suggest
 
@@ -30,7 +29,7 @@ _RANGES = {
     "turning_weight": (0.0, 1e6),
 }
 _WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440), "neighbours": (0, MOST_ROBOTS)}
-_RENDER_MODES = (None, "rgb_array", "human")
+_CHOICES = {"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")}
 
 
 @dataclass(frozen=True)
@@ -102,29 +101,22 @@ class CorridorOptions:
         Raises:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
-        names = [field.name for field in fields(cls)]
-        for name in keywords:
-            if name not in names:
-                raise ConfigError(f"unknown keyword {name!r} of a corridor environment{suggest(name, names)}")
+        check_names("a corridor environment", keywords, [field.name for field in fields(cls)])
         options = cls(**plain(keywords))
+        for name, allowed in _CHOICES.items():
+            check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():
-            _check_range(name, getattr(options, name), low, high)
+            check_range(name, getattr(options, name), low, high)
         for name, (least, most) in _WHOLE.items():
-            _check_whole(name, getattr(options, name), least, most)
+            check_range(name, getattr(options, name), least, most, whole=True)
         options._check_rest()
         return options
 
     def _check_rest(self) -> None:
         if self.max_episode_steps is not None:
-            _check_whole("max_episode_steps", self.max_episode_steps, 1, 10**9)
-        if self.action not in _ACTIONS:
-            raise ConfigError(f"action = {self.action!r} is not known{suggest(str(self.action), _ACTIONS)}")
-        if self.render_mode not in _RENDER_MODES:
-            known = suggest(str(self.render_mode), [mode for mode in _RENDER_MODES if mode])
-            raise ConfigError(f"render_mode = {self.render_mode!r} is not known{known}")
+            check_range("max_episode_steps", self.max_episode_steps, 1, 10**9, whole=True)
         for name in ("collision_ends", "expose_truth"):
-            if not isinstance(getattr(self, name), bool):
-                raise ConfigError(f"{name} = {getattr(self, name)!r} must be true or false")
+            check_switch(name, getattr(self, name))
         if not isinstance(self.map, str | Floorplan):
             raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file")
         if self.places is not None and (
@@ -136,16 +128,4 @@ class CorridorOptions:
             raise ConfigError("starts and goals are given together, and in place of places")
 
 
-_ACTIONS = ("continuous", "discrete")
 _PLACES = ("predefined", "random")
-
-
-def _check_range(name: str, value: Any, low: float, high: float) -> None:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or not low <= value <= high:
-        raise ConfigError(f"{name} = {value!r} is out of range; a number from {low:g} to {high:g} is allowed")
-
-
-def _check_whole(name: str, value: Any, low: int, high: int) -> None:
-    if not isinstance(value, int) or isinstance(value, bool) or not low <= value <= high:
-        raise ConfigError(f"{name} = {value!r} is out of range; a whole number from {low} to {high:,} is allowed")

@@ -69,6 +69,8 @@ class ExplorationEnv(SingleWorld):
       Completeness is the known share of K, the cells that the robot can come to know (``measure_coverage``).
     - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's
       covariance.
+    - ``reward="combined"``: what a comparison measures, all at once: completeness - path - mean of ln D - collisions,
+      weighed by ``weights``; see ``CombinedReward``.
 
     ``info["reward_terms"]`` holds the terms by name.
 

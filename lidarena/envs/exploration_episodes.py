@@ -1,6 +1,5 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
-import math
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from typing import Any
@@ -16,9 +15,8 @@ from lidarena.envs.exploration_core import RESOLUTION, ExplorationCore
 from lidarena.envs.exploration_observation import make_observer
 from lidarena.envs.exploration_options import ExplorationOptions
 from lidarena.envs.exploration_picture import PathRecorder
+from lidarena.envs.exploration_rewards import make_reward
 
-CRASH_REWARD = -100.0
-"""The paper's r_crashed."""
 _GAIN = 0.001
 """Share of the map that counts as a gain where patience is limited."""
 
@@ -50,7 +48,7 @@ class ExplorationEpisodes:
         self._previous = np.zeros((worlds, parts))
         self._completeness = np.zeros(worlds)
         self._gained, self._gained_at = np.zeros(worlds), np.zeros(worlds, np.int64)
-        self._terms = {name: np.zeros(worlds) for name in (options.reward, "collision")}
+        self._reward = make_reward(self.core, options)
         self._compiled = False
 
     def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
@@ -63,8 +61,7 @@ class ExplorationEpisodes:
                 self._previous[world] = 0.0
                 if self.recorder is not None:
                     self.recorder.begin(world, self.core)
-                for term in self._terms.values():
-                    term[world] = 0.0
+                self._reward.begin(world)
         self._completeness = self.core.completeness
 
     def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
@@ -79,7 +76,8 @@ class ExplorationEpisodes:
         self._compiled = True
         self._steps += 1
         self._remember(np.asarray(actions, dtype=np.float64))
-        rewards = self._reward()
+        before, self._completeness = self._completeness, self.core.completeness
+        rewards = self._reward.grade(self._completeness - before)
         terminated = self.core.sensors.collision.copy()
         if self.options.stop_at is not None:
             terminated |= self._completeness >= self.options.stop_at
@@ -104,18 +102,6 @@ class ExplorationEpisodes:
         else:
             self._previous[:] = 0.5 * (actions + 1.0)
 
-    def _reward(self) -> NDArray[np.float64]:
-        """The paper's eq. 2 or 3: a crash, or else the gain in percentage points, or 1 + tanh(η / D)."""
-        before, self._completeness = self._completeness, self.core.completeness
-        alive = ~self.core.sensors.collision
-        if self.options.reward == "completeness":
-            gain = 100.0 * (self._completeness - before)
-        else:
-            # NumPy's tanh takes another path for the last few of an array: world i would depend on the batch's size
-            gain = np.array([1.0 + math.tanh(self.options.eta / d) for d in self.core.criteria[:, 0].tolist()])
-        self._terms = {self.options.reward: np.where(alive, gain, 0.0), "collision": np.where(alive, 0.0, CRASH_REWARD)}
-        return self._terms[self.options.reward] + self._terms["collision"]
-
     def observe(self) -> Any:
         """Fresh observations of all worlds."""
         return self.observer.observe(self.core, self._previous)
@@ -137,7 +123,7 @@ class ExplorationEpisodes:
             "time": self._steps * self.options.decision_period,
             "collision": core.sensors.collision.copy(),
             "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
-            "reward_terms": {name: term.copy() for name, term in self._terms.items()},
+            "reward_terms": {name: term.copy() for name, term in self._reward.terms.items()},
             "map": view,
             "resolution": np.full(core.worlds, RESOLUTION),
             "origin": core.maps.origin.copy(),
@@ -151,11 +137,13 @@ class ExplorationEpisodes:
         """Everything that later steps depend on, by name, except the generators."""
         own = {"steps": self._steps, "previous": self._previous, "completeness": self._completeness}
         own |= {"gained": self._gained, "gained_at": self._gained_at}
-        return own | self.core.arrays()
+        return own | self._reward.arrays() | self.core.arrays()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of other episodes with the same options."""
         self._steps[:], self._previous[:] = saved["steps"], saved["previous"]
         self._completeness = saved["completeness"].copy()
         self._gained[:], self._gained_at[:] = saved["gained"], saved["gained_at"]
+        for name, array in self._reward.arrays().items():
+            array[:] = saved[name]
         self.core.load_arrays(saved)

@@ -1,12 +1,11 @@
 """Keywords of the exploration environments, checked at the border."""
 
-import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any
 
 from lidarena.envs.coverage import START_MARGIN
-from lidarena.envs.keyword_checks import plain
+from lidarena.envs.keyword_checks import check_choice, check_names, check_range, check_switch, plain
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
 from lidarena.world.refusals import ConfigError, MapError, suggest
 
@@ -14,16 +13,19 @@ ETA = 1.2e-4
 """η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). The paper
 prints 1, with which every step is worth 2."""
 
+COMBINED_WEIGHTS = {"completeness": 5.0, "path": 1.0, "uncertainty": 4.0, "collision": 3.0}
+"""Default weights of the combined reward."""
+
 MapSpec = str | Floorplan
 _CHOICES = {
-    "reward": ("completeness", "d_optimality"),
+    "reward": ("completeness", "d_optimality", "combined"),
     "observation": ("da_slam", "sectors", "compass", "map"),
     "action": ("discrete", "continuous"),
     "slam": ("rbpf", "truth"),
     "render_mode": (None, "rgb_array"),
 }
+_PARTICLES = (1, 1000)
 _RANGES = {
-    "particles": (1, 1000),
     "lidar_noise": (0.0, 1.0),
     "odometry_noise": (0.0, 100.0),
     "decision_period": (0.01, 2.0),
@@ -39,7 +41,8 @@ class ExplorationOptions:
     Attributes:
         map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them
             from which every reset draws one.
-        reward: ``"completeness"`` (the paper's eq. 2) or ``"d_optimality"`` (eq. 3).
+        reward: ``"completeness"`` (the paper's eq. 2), ``"d_optimality"`` (eq. 3), or ``"combined"``: the whole map on
+            a short path with a certain pose.
         observation: ``"da_slam"`` (the paper's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
             five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary
             with an egocentric picture of the map).
@@ -58,6 +61,8 @@ class ExplorationOptions:
         expose_truth: Give ``info["truth"]``, for evaluation.
         render_mode: None or ``"rgb_array"``.
         eta: η of the uncertainty reward [m^(4/3) rad^(2/3)].
+        weights: Of the combined reward, by the names of its terms: ``completeness``, ``path``, ``uncertainty``,
+            ``collision``; those left out keep their defaults.
     """
 
     map: MapSpec | Sequence[MapSpec] = "willow_lobby"
@@ -77,6 +82,7 @@ class ExplorationOptions:
     expose_truth: bool = False
     render_mode: str | None = None
     eta: float = ETA
+    weights: Mapping[str, float] | None = None
 
     @classmethod
     def checked(cls, keywords: Mapping[str, Any]) -> "ExplorationOptions":
@@ -86,29 +92,25 @@ class ExplorationOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
             MapError: A start that is neither a pose, ``"random"`` nor None.
         """
-        names = [field.name for field in fields(cls)]
-        for name in keywords:
-            if name not in names:
-                raise ConfigError(f"unknown keyword {name!r} of an exploration environment{suggest(name, names)}")
+        check_names("an exploration environment", keywords, [field.name for field in fields(cls)])
         options = cls(**plain(keywords))
         for name, allowed in _CHOICES.items():
-            _check_choice(name, getattr(options, name), allowed)
+            check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():
-            _check_range(name, getattr(options, name), low, high)
+            check_range(name, getattr(options, name), low, high)
         options._check_rest()
         return options
 
     def _check_rest(self) -> None:
         if self.max_episode_steps is not None:
-            _check_range("max_episode_steps", self.max_episode_steps, 1, 10**9)
-            _check_whole("max_episode_steps", self.max_episode_steps)
+            check_range("max_episode_steps", self.max_episode_steps, 1, 10**9, whole=True)
         if self.stop_at is not None:
-            _check_range("stop_at", self.stop_at, 0.0, 1.0)
+            check_range("stop_at", self.stop_at, 0.0, 1.0)
         if self.patience is not None:
-            _check_range("patience", self.patience, 0.01, 1e9)
-        _check_whole("particles", self.particles)
-        if not isinstance(self.expose_truth, bool):
-            raise ConfigError(f"expose_truth = {self.expose_truth!r} must be true or false")
+            check_range("patience", self.patience, 0.01, 1e9)
+        check_range("particles", self.particles, *_PARTICLES, whole=True)
+        check_switch("expose_truth", self.expose_truth)
+        self._check_weights()
         if isinstance(self.start, str) and self.start != "random":
             raise MapError(f"start = {self.start!r} must be a pose (x, y, theta), 'random' or None")
         if self.start is not None and not isinstance(self.start, str):
@@ -116,27 +118,27 @@ class ExplorationOptions:
         if not isinstance(self.map, str | Floorplan) and (not isinstance(self.map, Sequence) or not len(self.map)):
             raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file, or a list of them")
 
+    def _check_weights(self) -> None:
+        if self.weights is None:
+            return
+        if self.reward != "combined":
+            raise ConfigError(f"weights = {self.weights!r} are for reward='combined', not {self.reward!r}")
+        if not isinstance(self.weights, Mapping):
+            raise ConfigError(f"weights = {self.weights!r} must be numbers by name, of {', '.join(COMBINED_WEIGHTS)}")
+        for name, value in self.weights.items():
+            if name not in COMBINED_WEIGHTS:
+                raise ConfigError(f"unknown weight {name!r}{suggest(str(name), COMBINED_WEIGHTS)}")
+            check_range(f"weights.{name}", value, 0.0, 1e6)
+
+    @property
+    def combined_weights(self) -> dict[str, float]:
+        """All weights of the combined reward."""
+        return COMBINED_WEIGHTS | {name: float(value) for name, value in (self.weights or {}).items()}
+
     @property
     def maps(self) -> list[MapSpec]:
         """The floor plans to draw from."""
         return [self.map] if isinstance(self.map, str | Floorplan) else list(self.map)
-
-
-def _check_choice(name: str, value: Any, allowed: Sequence[str | None]) -> None:
-    if value not in allowed:
-        words = [word for word in allowed if word is not None]
-        raise ConfigError(f"{name} = {value!r} is not known{suggest(str(value), words)}")
-
-
-def _check_range(name: str, value: Any, low: float, high: float) -> None:
-    number = isinstance(value, int | float) and not isinstance(value, bool)
-    if not number or not math.isfinite(value) or not low <= value <= high:
-        raise ConfigError(f"{name} = {value!r} is out of range; a number from {low:g} to {high:g} is allowed")
-
-
-def _check_whole(name: str, value: Any) -> None:
-    if not isinstance(value, int):
-        raise ConfigError(f"{name} = {value!r} must be a whole number")
 
 
 def _check_pose(start: Any) -> None:

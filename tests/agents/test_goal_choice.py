@@ -28,7 +28,7 @@ def test_gymnasium_finds_nothing_to_complain_about() -> None:
 
 def episode(**weights: float) -> tuple[float, dict, dict, list[float]]:
     """Sum of the rewards with these weights alone, first and last info, and D-optimality at every decision."""
-    only = dict.fromkeys(("path", "uncertainty", "coverage", "collision"), 0.0)
+    only = dict.fromkeys(("path", "uncertainty", "completeness", "collision"), 0.0)
     env = GoalChoiceEnv(map=MAZE, weights=only | weights, max_episode_steps=400)
     _, start = env.reset(seed=1)
     seen: list[float] = []
@@ -47,18 +47,18 @@ def note(outcome: tuple, seen: list[float]) -> tuple:
 
 
 def test_rewards_are_what_their_weights_say() -> None:
-    total, start, end, _ = episode(coverage=1.0)
+    total, start, end, _ = episode(completeness=1.0)
     assert total == pytest.approx(end["completeness"] - start["completeness"]) and total > 0.5
     total, start, end, _ = episode(path=1.0)
     assert total == pytest.approx(-(end["path_length"] - start["path_length"]) / (0.55 * 25))
     total, *_, seen = episode(uncertainty=1.0)
     usual = np.full(50, np.log(1.3e-4))
     gain = usual[0] - np.concatenate([usual, np.log(seen)]).mean()
-    assert total == pytest.approx((0.55 * 25 / 31) ** 1.5 * gain)  # less than in a larger world
+    assert total == pytest.approx((25 / 56) ** 3 * gain)  # less than in a larger world
 
 
 def test_unknown_weights_are_refused() -> None:
-    with pytest.raises(ConfigError, match=r"unknown weight 'paht', allowed are path, "):
+    with pytest.raises(ConfigError, match=r"unknown weight 'paht'; did you mean 'path'"):
         GoalChoiceEnv(map=MAZE, weights={"paht": 1.0})
 
 

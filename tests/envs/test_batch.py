@@ -17,7 +17,7 @@ STEPS = 45
 KEYWORDS: list[dict[str, Any]] = [
     {},
     {"observation": "map", "reward": "d_optimality", "start": "random"},
-    {"slam": "truth", "action": "continuous"},
+    {"slam": "truth", "action": "continuous", "reward": "combined"},
 ]
 
 
@@ -106,8 +106,9 @@ def test_the_number_of_threads_is_checked() -> None:
         set_num_threads(0)
 
 
-def test_a_saved_batch_continues_to_the_bit() -> None:
-    batch = BatchedExploration(5, map=["env1", "maze:2"], max_episode_steps=25)
+@pytest.mark.parametrize("reward", ["completeness", "combined"])
+def test_a_saved_batch_continues_to_the_bit(reward: str) -> None:
+    batch = BatchedExploration(5, map=["env1", "maze:2"], max_episode_steps=25, reward=reward)
     batch.reset(seed=1)
     rng = np.random.default_rng(0)
     table = rng.integers(0, 3, (60, 5))
@@ -115,7 +116,7 @@ def test_a_saved_batch_continues_to_the_bit() -> None:
         batch.step(actions)
     saved = batch.get_state()
     expected = [[raw(part) for part in batch.step(actions)[:2]] for actions in table[30:]]
-    other = BatchedExploration(5, map=["env1", "maze:2"], max_episode_steps=25)
+    other = BatchedExploration(5, map=["env1", "maze:2"], max_episode_steps=25, reward=reward)
     other.set_state(saved)
     assert [[raw(part) for part in other.step(actions)[:2]] for actions in table[30:]] == expected
 

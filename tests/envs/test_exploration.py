@@ -23,7 +23,7 @@ def test_gymnasium_finds_nothing_to_complain_about(name: str) -> None:
         {"observation": "sectors"},
         {"observation": "compass"},
         {"observation": "map"},
-        {"observation": "map", "action": "continuous"},
+        {"observation": "map", "action": "continuous", "reward": "combined"},
         {"reward": "d_optimality", "action": "continuous"},
         {"slam": "truth", "render_mode": "rgb_array"},
         {"map": "maze:4", "start": "random", "particles": 5},
@@ -201,6 +201,11 @@ def test_stepping_before_reset_is_refused(make: type) -> None:
         ({"slam": "gmapping"}, "slam"),
         ({"expose_truth": 1}, "expose_truth"),
         ({"map": []}, "map"),
+        ({"reward": "combined", "weights": {"paht": 1}}, "unknown weight 'paht'; did you mean 'path'"),
+        ({"reward": "combined", "weights": {"path": -1}}, "weights.path = -1 is out of range"),
+        ({"reward": "combined", "weights": {"path": "long"}}, "weights.path = 'long' is out of range"),
+        ({"reward": "combined", "weights": 2.0}, "weights = 2.0 must be numbers by name"),
+        ({"weights": {"path": 1.0}}, "weights = .* are for reward='combined', not 'completeness'"),
     ],
 )
 def test_bad_keywords_are_refused_in_one_sentence(keywords: dict, message: str) -> None:
