@@ -18,7 +18,7 @@ USUAL_PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]."""
 ORDINARY_AREA = 56.0
 """Floor plan in which uncertainty weighs as given [m²]."""
-SIZE_POWER = 3.0
+SIZE_POWER = 2.0
 """Power of the area with which uncertainty weighs more in larger floor plans, in which certainty is lost sooner."""
 USUAL_D_OPTIMALITY, USUAL_STEPS = 1.3e-4, 50
 """The mean of D-optimality begins as if it had been this for so many steps; the certain start says little."""
@@ -86,7 +86,7 @@ class UncertaintyReward:
 class CombinedReward:
     """The whole map on a short path with a certain pose (the paper's future work).
 
-    r = w_completeness Δc - w_path Δs / s_A - w_uncertainty (A / 56 m²)³ Δm - w_collision · collision
+    r = w_completeness Δc - w_path Δs / s_A - w_uncertainty (A / 56 m²)² Δm - w_collision · collision
 
     c is the completeness, s the path by odometry, s_A = 0.55/m · A what frontier exploration usually drives in a floor
     plan whose walls span the area A, and m the mean of ln D since the start, as if 50 steps of the usual D had gone

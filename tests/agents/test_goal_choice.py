@@ -54,7 +54,7 @@ def test_rewards_are_what_their_weights_say() -> None:
     total, *_, seen = episode(uncertainty=1.0)
     usual = np.full(50, np.log(1.3e-4))
     gain = usual[0] - np.concatenate([usual, np.log(seen)]).mean()
-    assert total == pytest.approx((25 / 56) ** 3 * gain)  # less than in a larger world
+    assert total == pytest.approx((25 / 56) ** 2 * gain)  # less than in a larger world
 
 
 def test_unknown_weights_are_refused() -> None:

@@ -47,7 +47,7 @@ def test_the_terms_add_up_to_what_is_measured() -> None:
     assert total["path"] == pytest.approx(-weights["path"] * last["path_length"] / (0.55 * AREA))
     usual = [math.log(USUAL_D_OPTIMALITY)]
     mean = np.mean(usual * USUAL_STEPS + [math.log(info["d_optimality"]) for info in infos[1:]])
-    assert total["uncertainty"] == pytest.approx(-weights["uncertainty"] * (AREA / 56) ** 3 * (mean - usual[0]))
+    assert total["uncertainty"] == pytest.approx(-weights["uncertainty"] * (AREA / 56) ** 2 * (mean - usual[0]))
 
 
 def test_weights_scale_their_terms_and_leave_the_drive_alone() -> None:
