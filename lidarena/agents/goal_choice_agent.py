@@ -5,7 +5,9 @@ from typing import Any
 from numpy.typing import NDArray
 
 from lidarena.agents.learned_policy import LearnedPolicy
+from lidarena.baselines.frontier_features import CANDIDATES, FEATURES
 from lidarena.baselines.goal_choice import GoalChoicePolicy
+from lidarena.world.refusals import PolicyFileError
 
 
 class GoalChoiceAgent:
@@ -21,7 +23,16 @@ class GoalChoiceAgent:
         Args:
             env: The environment; any ``observation``, ``reward`` or ``action``.
             learned: What `lidarena.agents.load` gave.
+
+        Raises:
+            PolicyFileError: The network was trained on other features of the candidates.
         """
+        shape = learned.observation_space.shape
+        if shape != (CANDIDATES, FEATURES):
+            raise PolicyFileError(
+                f"the agent was trained to choose by features of shape {shape}, this version tells it "
+                f"{(CANDIDATES, FEATURES)}: train it anew"
+            )
         self.learned = learned
         self._policy = GoalChoicePolicy(env, self._choose)
 
@@ -30,7 +41,7 @@ class GoalChoiceAgent:
 
     @property
     def finished(self) -> bool:
-        """Whether no frontier is left."""
+        """Whether nothing is left to explore, and the robot is where it wants to end."""
         return self._policy.finished
 
     def reset(self, seed: int | None = None) -> None:

@@ -38,11 +38,12 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
 
     ## Rewards
 
-    The exploration world's, ``reward="combined"``, summed over the decision periods of the step.
+    The exploration world's, ``reward="combined"``, summed over the decision periods of the step; what it earns before
+    the first choice is nobody's merit and left out.
 
     ## Episode end
 
-    As in the exploration world; also when no frontier is left.
+    As in the exploration world; also when no frontier is left, or nothing new has come for three minutes.
 
     ## Arguments
 

@@ -31,7 +31,6 @@ NAMES = (
     "uncertainty",  # log10 of D-optimality / 1e-4
     "mean",  # log10 of its geometric mean so far / 1e-4
     "elapsed",  # time / 100 s
-    "known",  # area of the known map / 50 m²
 )
 """The features, in their order."""
 FEATURES = len(NAMES)
@@ -73,7 +72,7 @@ class Certainty:
     elapsed: float
 
     def features(self) -> tuple[float, float, float]:
-        """``uncertainty``, ``mean`` and ``elapsed``."""
+        """The last three of ``NAMES``."""
         return math.log10(max(self.now, 1e-9) / 1e-4), math.log10(max(self.mean, 1e-9) / 1e-4), self.elapsed / 100.0
 
 
@@ -103,7 +102,6 @@ def describe(
     goals = terrain.around.points(np.array([candidate.cell for candidate in candidates]))
     apart = np.hypot(*(goals[:, None] - goals[None]).transpose(2, 0, 1))
     features = np.zeros((CANDIDATES, FEATURES), np.float32)
-    known = float(np.count_nonzero(terrain.occupancy >= 0)) * terrain.around.resolution**2 / 50.0
     for i, candidate in enumerate(candidates):
         others = np.delete(apart[i], i)
         leg = terrain.around.points(np.array([_first_leg(lengths, *candidate.cell, _LEG)]))[0] - pose[:2]
@@ -115,7 +113,7 @@ def describe(
             min(others.min(initial=9.0), 9.0) / 3.0, (others.mean() if len(others) else 0.0) / 3,
             (len(track) - been[0]) / 100.0 if len(been) else 0.0, math.dist(goals[i], track[0]) / 3.0,
             float(candidate.frontier is None and not candidate.ends), float(candidate.ends),
-            *certainty.features(), known,
+            *certainty.features(),
         )  # fmt: skip
     return features
 

@@ -30,11 +30,12 @@ class GoalChoicePolicy(FrontierPolicy):
 
     The candidates are the frontiers of at least 0.5 m, the nearest ones by way, and the place where the robot started:
     going back there closes a loop. What is told of each is in :mod:`lidarena.baselines.frontier_features`. ``choose``
-    is asked when the frontier that was driven to has vanished, and every 3 s, unless nothing new has come for 30 s.
-    When no frontier is left it is asked once more whether to end there or to drive back to the start first.
+    is asked when the frontier that was driven to has vanished, and every 3 s; on the way to a frontier no more once
+    nothing new has come for 30 s, where the time on the way back to the start does not count. When no frontier is left,
+    or nothing new has come for 180 s, it is asked once more whether to end there or to drive back to the start first.
 
     Attributes:
-        finished: Whether no frontier is left, and the robot is where it wants to end.
+        finished: Whether nothing is left to explore, and the robot is where it wants to end.
     """
 
     def __init__(self, env: Any, choose: Choose) -> None:

@@ -70,7 +70,7 @@ class ExplorationEnv(SingleWorld):
     - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's
       covariance.
     - ``reward="combined"``: what a comparison measures, all at once: completeness - path - mean of ln D - collisions,
-      weighed by ``weights``; see ``CombinedReward``.
+      weighed by ``weights``, uncertainty more in larger floor plans; see ``CombinedReward``.
 
     ``info["reward_terms"]`` holds the terms by name.
 

@@ -13,8 +13,10 @@ ETA = 1.2e-4
 """η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). The paper
 prints 1, with which every step is worth 2."""
 
-COMBINED_WEIGHTS = {"completeness": 5.0, "path": 1.0, "uncertainty": 4.0, "collision": 3.0}
-"""Default weights of the combined reward."""
+COMBINED_WEIGHTS = {"completeness": 10.0, "path": 1.0, "uncertainty": 1.0, "collision": 10.0}
+"""Default weights of the combined reward: a whole drive is worth more than none also in the real buildings."""
+CERTAIN_ENOUGH = 1.3e-4
+"""The usual D-optimality of an exploring robot in Env-1 to Env-4."""
 
 MapSpec = str | Floorplan
 _CHOICES = {
@@ -31,6 +33,7 @@ _RANGES = {
     "decision_period": (0.01, 2.0),
     "collision_distance": (START_CLEARANCE, START_MARGIN),
     "eta": (1e-12, 1e6),
+    "certain_enough": (1e-12, 1e6),
 }
 
 
@@ -63,6 +66,8 @@ class ExplorationOptions:
         eta: η of the uncertainty reward [m^(4/3) rad^(2/3)].
         weights: Of the combined reward, by the names of its terms: ``completeness``, ``path``, ``uncertainty``,
             ``collision``; those left out keep their defaults.
+        certain_enough: D-optimality from which on down the combined reward pays for no more certainty
+            [m^(4/3) rad^(2/3)].
     """
 
     map: MapSpec | Sequence[MapSpec] = "willow_lobby"
@@ -83,6 +88,7 @@ class ExplorationOptions:
     render_mode: str | None = None
     eta: float = ETA
     weights: Mapping[str, float] | None = None
+    certain_enough: float = CERTAIN_ENOUGH
 
     @classmethod
     def checked(cls, keywords: Mapping[str, Any]) -> "ExplorationOptions":

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration_core import ExplorationCore
-from lidarena.envs.exploration_options import ExplorationOptions
+from lidarena.envs.exploration_options import CERTAIN_ENOUGH, ExplorationOptions
 
 Floats = NDArray[np.float64]
 
@@ -16,12 +16,12 @@ CRASH_REWARD = -100.0
 """The paper's r_crashed."""
 USUAL_PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]."""
-ORDINARY_AREA = 56.0
-"""Floor plan in which uncertainty weighs as given [m²]."""
-SIZE_POWER = 2.0
+ORDINARY_AREA, LARGEST_AREA = 56.0, 91.0
+"""Floor plan in which uncertainty weighs as given, and the one from which on it weighs no more [m²]."""
+SIZE_POWER = 1.5
 """Power of the area with which uncertainty weighs more in larger floor plans, in which certainty is lost sooner."""
-USUAL_D_OPTIMALITY, USUAL_STEPS = 1.3e-4, 50
-"""The mean of D-optimality begins as if it had been this for so many steps; the certain start says little."""
+USUAL_STEPS = 50
+"""The mean of D-optimality begins as if it had been the usual one for so many steps; the certain start says little."""
 
 
 class Reward(Protocol):
@@ -86,20 +86,27 @@ class UncertaintyReward:
 class CombinedReward:
     """The whole map on a short path with a certain pose (the paper's future work).
 
-    r = w_completeness Δc - w_path Δs / s_A - w_uncertainty (A / 56 m²)² Δm - w_collision · collision
+    r = w_completeness Δc - w_path Δs / s_A - w_uncertainty k_A Δm - w_collision · collision
 
     c is the completeness, s the path by odometry, s_A = 0.55/m · A what frontier exploration usually drives in a floor
-    plan whose walls span the area A, and m the mean of ln D since the start, as if 50 steps of the usual D had gone
-    before. Over an episode this adds up to what a comparison measures: completeness, path, the logarithm of the
-    geometric mean of D-optimality, collision.
+    plan whose walls span the area A, and k_A = (min(A, 91 m²) / 56 m²)^1.5. m is the mean over the steps of
+    ln max(D, D_0) since the start, as if D had been 1.3e-4, its usual value, for 50 steps before. D_0 is the keyword
+    ``certain_enough``: with the default, the usual value, waiting where the pose is certain earns nothing, and
+    uncertainty only costs. A smaller one rewards every step near the start, also of a robot that stands still: for
+    policies that cannot.
+
+    Over an episode the terms add up to what a comparison measures (nearly: it takes the true path, and the mean of ln D
+    without the 50 steps). The area, which the agent is not told, only weighs; with ``observation="da_slam"`` the agent
+    is told the completeness, with ``"map"`` the covariance, too.
 
     Args:
         core: The worlds.
         weights: By name: ``completeness``, ``path``, ``uncertainty``, ``collision``.
+        certain_enough: D_0 [m^(4/3) rad^(2/3)].
     """
 
-    def __init__(self, core: ExplorationCore, weights: Mapping[str, float]) -> None:
-        self._core, self._weights = core, dict(weights)
+    def __init__(self, core: ExplorationCore, weights: Mapping[str, float], certain_enough: float) -> None:
+        self._core, self._weights, self._enough = core, dict(weights), certain_enough
         self._areas = np.array([_area(plan.bounds) for plan in core.plans])
         worlds = core.worlds
         self._path, self._log_mean = np.zeros(worlds), np.zeros(worlds)
@@ -109,20 +116,22 @@ class CombinedReward:
     def begin(self, world: int) -> None:
         """Begin a new episode."""
         self._path[world] = self._core.sensors.path_length[world]
-        self._log_mean[world], self._steps[world] = math.log(USUAL_D_OPTIMALITY), USUAL_STEPS
+        self._log_mean[world] = math.log(max(CERTAIN_ENOUGH, self._enough))
+        self._steps[world] = USUAL_STEPS
         _clear(self.terms, world)
 
     def grade(self, gain: Floats) -> Floats:
         """Grade a step."""
         core, weights = self._core, self._weights
         area, path = self._areas[core.plan], core.sensors.path_length
+        size = (np.minimum(area, LARGEST_AREA) / ORDINARY_AREA) ** SIZE_POWER
         self._steps += 1
-        log_d = np.array([math.log(d) for d in core.criteria[:, 0].tolist()])  # as with tanh above
+        log_d = np.array([math.log(max(d, self._enough)) for d in core.criteria[:, 0].tolist()])  # as with tanh above
         change = (log_d - self._log_mean) / self._steps
         self.terms = {
             "completeness": weights["completeness"] * gain,
             "path": -weights["path"] * (path - self._path) / (USUAL_PATH_PER_AREA * area),
-            "uncertainty": -weights["uncertainty"] * (area / ORDINARY_AREA) ** SIZE_POWER * change,
+            "uncertainty": -weights["uncertainty"] * size * change,
             "collision": np.where(core.sensors.collision, -weights["collision"], 0.0),
         }
         self._path[:] = path
@@ -138,7 +147,7 @@ class CombinedReward:
 def make_reward(core: ExplorationCore, options: ExplorationOptions) -> Reward:
     """Make what the keyword ``reward`` names."""
     if options.reward == "combined":
-        return CombinedReward(core, options.combined_weights)
+        return CombinedReward(core, options.combined_weights, options.certain_enough)
     return UncertaintyReward(core, options.eta) if options.reward == "d_optimality" else CompletenessReward(core)
 
 

@@ -23,13 +23,18 @@ def check_names(what: str, keywords: Mapping[str, Any], allowed: Iterable[str]) 
 
 
 def plain(keywords: Mapping[str, Any]) -> dict[str, Any]:
-    """Return the keywords with every path as the string, and every NumPy scalar as the number, that it stands for."""
+    """Return the keywords with every path as the string, and every NumPy scalar as the number, that it stands for.
+
+    Also inside of dictionaries.
+    """
     return {name: _plain(value) for name, value in keywords.items()}
 
 
 def _plain(value: Any) -> Any:
     if isinstance(value, os.PathLike):
         return os.fspath(value)
+    if isinstance(value, Mapping):
+        return plain(value)
     return value.item() if isinstance(value, np.generic) else value
 
 

@@ -61,7 +61,7 @@ MEASURES: tuple[Measure, ...] = (
     Measure("mean_time", "Mean arrival", "s", 1, "s", "low", main=True),
     Measure("odometry_error", "Odometry error", "cm", 100, "m"),
     Measure("entropy", "Entropy", "nat", 1, "nat"),
-    Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat"),
+    Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat", main=True),
     Measure("return", "Return"),
     Measure("steps", "Steps"),
     Measure("decision_time", "Decision", "ms", 1000, "s", main=True),

@@ -57,15 +57,7 @@ def test_what_is_told_is_of_the_order_of_one_and_in_order() -> None:
         assert (np.diff(frontiers[:, COLUMN["way"]]) >= 0).all()
         assert told[:, COLUMN["pursued"]].sum() <= 1 and told[:, COLUMN["nearest"]].sum() == 1
         assert (told[:, COLUMN["unknown"]] <= 1).all() and (frontiers[:, COLUMN["size"]] * 3 >= 0.5 - 1e-6).all()
-        assert (told[:, COLUMN["known"]] == told[0, COLUMN["known"]]).all()
         assert (told[:, COLUMN["way"]] >= 0).all() and (told[:, COLUMN["turn"]] <= 1).all()
-
-
-def test_what_is_known_grows_to_the_size_of_the_world() -> None:
-    chooser = Nearest()
-    explore(chooser, 3000)
-    known = [50 * float(features[0, COLUMN["known"]]) for features in chooser.told]
-    assert known[0] < 0.6 * known[-1] and 15.0 < known[-1] < 30.0  # of 25 m²
 
 
 def test_whoever_cannot_decide_explores_all_the_same() -> None:

@@ -205,6 +205,7 @@ def test_stepping_before_reset_is_refused(make: type) -> None:
         ({"reward": "combined", "weights": {"path": -1}}, "weights.path = -1 is out of range"),
         ({"reward": "combined", "weights": {"path": "long"}}, "weights.path = 'long' is out of range"),
         ({"reward": "combined", "weights": 2.0}, "weights = 2.0 must be numbers by name"),
+        ({"reward": "combined", "certain_enough": 0}, "certain_enough = 0 is out of range"),
         ({"weights": {"path": 1.0}}, "weights = .* are for reward='combined', not 'completeness'"),
     ],
 )

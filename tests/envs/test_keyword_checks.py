@@ -53,3 +53,9 @@ def test_numpys_numbers_are_numbers(make: Any) -> None:
     env.reset(seed=0)
     steps = [env.step(env.action_space.sample())[2:4] for _ in range(3)]
     assert steps[-1][1] and not steps[0][1]
+
+
+def test_numpys_numbers_are_numbers_in_dictionaries_too() -> None:
+    env = ExplorationEnv(map="env1", reward="combined", weights={"path": np.float32(2), "collision": np.int64(3)})
+    env.reset(seed=0)
+    assert env.step(0)[4]["reward_terms"]["path"] < 0.0
