@@ -4,6 +4,7 @@ python benchmarks/kills.py [--kills 10] [--steps 24000] [--seed 0]
 """
 
 import argparse
+import csv
 import random
 import subprocess
 import sys
@@ -34,21 +35,28 @@ def finish(*arguments: str) -> None:
         raise RuntimeError(f"train.py {' '.join(arguments)} failed")
 
 
-def kill_and_resume(config: Path, folder: Path, wait: float) -> int:
-    """Train, kill the training ``wait`` seconds after its folder has appeared, and let it go on to the end.
+def kill_and_resume(config: Path, folder: Path, rows: int, wait: float) -> int:
+    """Train, kill the training ``wait`` seconds after its curve has ``rows`` rows, and let it go on to the end.
 
     Returns:
-        The step of the checkpoint from which it went on; 0 if there was none yet.
+        The step of the checkpoint from which it went on; 0 if there was none yet, -1 if it had ended before the kill.
     """
     training = begin("--config", str(config), "--out", str(folder))
-    while not (folder / "config.yaml").exists():
+    while _rows(folder) < rows and training.poll() is None:
         time.sleep(0.01)
     time.sleep(wait)
+    was_running = training.poll() is None
     training.kill()
     training.wait()
     steps = [int(path.name.partition("_")[2]) for path in folder.glob("checkpoints/step_*")]
     finish("--resume", str(folder))
-    return max(steps, default=0)
+    return max(steps, default=0) if was_running else -1
+
+
+def _rows(folder: Path) -> int:
+    """Rows of the learning curve so far."""
+    curve = folder / "progress.csv"
+    return len(curve.read_text(encoding="utf-8").splitlines()) - 1 if curve.exists() else 0
 
 
 def learned(folder: Path) -> tuple[bytes, bytes]:
@@ -61,18 +69,25 @@ def exact_resumptions(kills: int, steps: int, seed: int, root: Path) -> int:
     """Kill so many trainings, each at a random moment; how many ended with the weights of the one left alone."""
     config, alone = root / "training.yaml", root / "alone"
     config.write_text(_TRAINING.format(steps=steps), encoding="utf-8")
-    began = time.perf_counter()
     finish("--config", str(config), "--out", str(alone))
-    length = time.perf_counter() - began
-    draw, exact = random.Random(seed), 0
-    for k in range(kills):
-        step = kill_and_resume(config, root / f"killed_{k}", draw.uniform(0.0, 0.7 * length))
-        same = learned(root / f"killed_{k}") == learned(alone)
+    rows = _rows(alone)
+    pace = _seconds(alone) / rows
+    draw, exact, k, tries = random.Random(seed), 0, 0, 0
+    while k < kills and tries < 3 * kills:
+        folder, tries = root / f"killed_{tries}", tries + 1
+        step = kill_and_resume(config, folder, draw.randrange(rows - 1), draw.uniform(0.0, pace))
+        if step < 0 or step >= steps:
+            continue  # it had come to its end: nothing was killed
+        k, same = k + 1, learned(folder) == learned(alone)
         exact += same
-        print(
-            f"kill {k + 1}: went on from step {step:6,}, {'the same weights' if same else 'OTHER WEIGHTS'}", flush=True
-        )
+        print(f"kill {k}: went on from step {step:6,}, {'the same weights' if same else 'OTHER WEIGHTS'}", flush=True)
     return exact
+
+
+def _seconds(folder: Path) -> float:
+    """How long a training took, without its start."""
+    with (folder / "progress.csv").open(newline="", encoding="utf-8") as stream:
+        return float(list(csv.DictReader(stream))[-1]["seconds"])
 
 
 def main() -> None:

@@ -6,11 +6,14 @@ the rewards; a training that goes on from it takes the same steps, to the bit, a
 exception are environments without ``get_state`` and ``set_state`` (none of Lidarena's): their worlds start over.
 """
 
+import hashlib
 import json
 import random
+import re
 import shutil
 import zipfile
 from collections import deque
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -31,18 +34,19 @@ Arrays = dict[str, NDArray[Any]]
 KEPT = 2
 """Checkpoints that stay in the folder of a training that goes on: the newest, and one before it."""
 
-_VERSION = 2
+_VERSION = 3
 _FILES = ("model.safetensors", "worlds.npz", "trainer.npz", "trainer.json")
 _NORMALIZER = ("mean", "var", "count")
 
 
-def save(run_folder: Path, model: PPO, seconds: float, keep: int = KEPT) -> Path:
+def save(run_folder: Path, model: PPO, seconds: float, made_with: Mapping[str, Any], keep: int = KEPT) -> Path:
     """Write a checkpoint of a training between two updates, and remove all but the last ``keep``.
 
     Args:
         run_folder: Of the training.
         model: PPO on a `BatchVecEnv`.
         seconds: That the training has taken so far.
+        made_with: What the steps so far depend on, see ``run_folder.fixed_part``.
         keep: How many checkpoints stay.
 
     Returns:
@@ -50,7 +54,7 @@ def save(run_folder: Path, model: PPO, seconds: float, keep: int = KEPT) -> Path
     """
     folder = run_folder / "checkpoints" / f"step_{model.num_timesteps:013d}"
     if not folder.exists():
-        write_folder(folder, lambda temporary: _fill(temporary, model, seconds))
+        write_folder(folder, lambda temporary: _fill(temporary, model, seconds, made_with))
     for old in _folders(run_folder)[:-keep]:
         shutil.rmtree(old)
     return folder
@@ -67,12 +71,13 @@ def step_of(folder: Path) -> int:
     return int(folder.name.removeprefix("step_"))
 
 
-def restore(folder: Path, model: PPO) -> float:
+def restore(folder: Path, model: PPO, made_with: Mapping[str, Any]) -> float:
     """Put a freshly made training into the state of a checkpoint.
 
     Args:
         folder: Of the checkpoint.
         model: PPO as it was made at the start of that training; its next ``learn(reset_num_timesteps=False)`` goes on.
+        made_with: What the checkpoint must have been made with, as for `save`.
 
     Returns:
         Seconds that the training had taken.
@@ -82,11 +87,12 @@ def restore(folder: Path, model: PPO) -> float:
     """
     for name in _FILES:
         if not (folder / name).is_file():
-            raise ConfigError(f"the checkpoint {str(folder)!r} lacks {name}, so the training cannot go on from it")
+            raise ConfigError(
+                f"the checkpoint {str(folder)!r} lacks {name}, so the training cannot go on from it{_older(folder)}"
+            )
     try:
         about = json.loads((folder / "trainer.json").read_text(encoding="utf-8"))
-        if about["version"] != _VERSION:
-            raise ConfigError(f"the checkpoint {str(folder)!r} is of version {about['version']}, not {_VERSION}")
+        _check(folder, about, made_with)
         _restore_model(safetensors.torch.load_file(folder / "model.safetensors"), model)
         arrays = _load_arrays(folder / "trainer.npz")
         _restore_worlds(_load_arrays(folder / "worlds.npz"), arrays, model)
@@ -96,9 +102,40 @@ def restore(folder: Path, model: PPO) -> float:
     except ConfigError:
         raise
     except (SafetensorError, ValueError, KeyError, TypeError, IndexError, RuntimeError, OSError, EOFError) as error:
-        raise ConfigError(f"the checkpoint {str(folder)!r} is damaged or of another version: {error}") from None
+        raise ConfigError(f"the checkpoint {str(folder)!r} is damaged: {error}{_older(folder)}") from None
     except zipfile.BadZipFile:
-        raise ConfigError(f"the checkpoint {str(folder)!r} is damaged: one of its arrays is truncated") from None
+        raise ConfigError(
+            f"the checkpoint {str(folder)!r} is damaged: one of its arrays is truncated{_older(folder)}"
+        ) from None
+
+
+def _check(folder: Path, about: Mapping[str, Any], made_with: Mapping[str, Any]) -> None:
+    """Refuse a checkpoint of another version or configuration, and files that are not those that were saved."""
+    if about["version"] != _VERSION:
+        raise ConfigError(f"the checkpoint {str(folder)!r} is of version {about['version']}, not {_VERSION}")
+    saved, wanted = about["made_with"], json.loads(json.dumps(dict(made_with)))
+    for key in sorted(saved.keys() | wanted.keys()):
+        if saved.get(key) != wanted.get(key):
+            raise ConfigError(
+                f"the checkpoint {str(folder)!r} is of another training, made with {key} = {saved.get(key)!r} where "
+                f"this one has {wanted.get(key)!r}"
+            )
+    for name, digest in about["sha256"].items():
+        if _digest(folder / name) != digest:
+            raise ConfigError(
+                f"the checkpoint {str(folder)!r} is damaged: {name} is not the file that was saved{_older(folder)}"
+            )
+
+
+def _older(folder: Path) -> str:
+    """What to do where a checkpoint is of no use but an older one is there."""
+    before = [path for path in _folders(folder.parent.parent) if path.name < folder.name]
+    return f"; without that folder it goes on from step {step_of(before[-1]):,}" if before else ""
+
+
+def _digest(file: Path) -> str:
+    with file.open("rb") as stream:
+        return hashlib.file_digest(stream, "sha256").hexdigest()
 
 
 def batch_of(model: PPO) -> BatchVecEnv:
@@ -111,10 +148,11 @@ def batch_of(model: PPO) -> BatchVecEnv:
 
 
 def _folders(run_folder: Path) -> list[Path]:
-    return sorted(path for path in (run_folder / "checkpoints").glob("step_*") if path.is_dir())
+    named = (run_folder / "checkpoints").glob("step_*")
+    return sorted(path for path in named if re.fullmatch(r"step_\d{13}", path.name) and path.is_dir())
 
 
-def _fill(folder: Path, model: PPO, seconds: float) -> None:
+def _fill(folder: Path, model: PPO, seconds: float, made_with: Mapping[str, Any]) -> None:
     weights = {f"policy.{name}": tensor for name, tensor in weights_of(model.policy).items()}
     moments = {
         f"optimizer.{index}.{name}": tensor
@@ -128,6 +166,8 @@ def _fill(folder: Path, model: PPO, seconds: float) -> None:
     _save_arrays(folder / "trainer.npz", _trainer_arrays(model))
     about = {
         "version": _VERSION,
+        "made_with": dict(made_with),
+        "sha256": {name: _digest(folder / name) for name in _FILES[:-1]},
         "num_timesteps": model.num_timesteps,
         "n_updates": model._n_updates,
         "seconds": seconds,

@@ -4,12 +4,16 @@ from pathlib import Path
 from typing import Any
 
 from lidarena.agents import checkpoint
+from lidarena.agents.learning_curve import FILE as CURVE_FILE
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.agents.yaml_config import load_config
 from lidarena.world.refusals import ConfigError
 
+POLICY_FILES = ("policy.safetensors", "policy.json")
+"""What `lidarena.agents.load` reads."""
 _MAY_CHANGE = ("total_steps", "checkpoint_every", "torch_threads", "out")
-"""Keys that may differ when a training goes on, since no step taken so far depends on them."""
+"""Keys that may differ when a training goes on: no world or update is another for them, except that a learning rate
+with a start and an end falls over ``total_steps``, anew from where the training is when they are raised."""
 
 
 def claim(out: str | Path, exact: bool = False) -> Path:
@@ -68,8 +72,7 @@ def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path | N
     Raises:
         ConfigError: The folder is no run folder, or was made with another configuration.
     """
-    old = _flat(config_of(folder).model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
-    new = _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
+    old, new = fixed_part(config_of(folder)), fixed_part(config)
     for key in sorted(old.keys() | new.keys()):
         if old.get(key) != new.get(key):
             raise ConfigError(
@@ -77,6 +80,29 @@ def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path | N
                 f"{new.get(key)!r}; only {', '.join(_MAY_CHANGE)} may change"
             )
     return checkpoint.newest(Path(folder))
+
+
+def fixed_part(config: TrainingConfig) -> dict[str, Any]:
+    """Return the keys, as ``--set`` spells them, that must stay the same when a training goes on, with their values."""
+    return _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
+
+
+def set_aside(folder: Path) -> Path | None:
+    """Move policy and curve of a run that has no checkpoint into a folder of their own, before it begins anew.
+
+    Returns:
+        That folder, None if there was nothing to keep.
+    """
+    kept = [folder / name for name in (*POLICY_FILES, CURVE_FILE) if (folder / name).exists()]
+    if not kept:
+        return None
+    number = 1
+    while (aside := folder / f"before_{number}").exists():
+        number += 1
+    aside.mkdir()
+    for file in kept:
+        file.rename(aside / file.name)
+    return aside
 
 
 def _take(folder: Path) -> bool:

@@ -71,7 +71,12 @@ def train(
     with _torch_settings(config.torch_threads), _model(config) as model:
         if resume is None:
             folder = run_folder.claim(config.out, exact_out)
-        seconds = checkpoint.restore(start, model) if start else 0.0
+        seconds = checkpoint.restore(start, model, run_folder.fixed_part(config)) if start else 0.0
+        if resume is not None and start is None:
+            aside = run_folder.set_aside(folder)
+            _tell(
+                f"{folder} has no checkpoint and begins anew{f'; what it had is in {aside}' if aside else ''}", progress
+            )
         _tell(f"run:      {folder}{f', from step {model.num_timesteps:,}' if start else ''}", progress)
         dump_config(config.model_copy(update={"out": str(folder)}), folder / CONFIG_FILE)
         _run(_Run(config, folder, model, seconds), progress)
@@ -189,7 +194,8 @@ class _Run:
     def save(self, last: bool) -> None:
         """Write policy and checkpoint; the old ones stay until the new ones are whole."""
         self.save_policy()
-        checkpoint.save(self.folder, self.model, self.seconds, keep=1 if last else checkpoint.KEPT)
+        made_with = run_folder.fixed_part(self.config)
+        checkpoint.save(self.folder, self.model, self.seconds, made_with, keep=1 if last else checkpoint.KEPT)
         self._saved_at = self.model.num_timesteps
 
     def save_policy(self) -> None:

@@ -19,6 +19,8 @@ from lidarena.evaluation.statistics import geometric_mean
 
 Floats = NDArray[np.float64]
 
+EXPLORED = 0.99
+"""Completeness that counts as success of an exploration, however its episode ended but by a collision."""
 UNTIMED_DECISIONS = 5
 """Decisions at the start of an episode whose time is not counted: they load compiled code."""
 
@@ -138,7 +140,10 @@ def run_episode(
 def _measures(env: Env, log: "_Log", info: Mapping[str, Any], ending: str) -> dict[str, float]:
     """The measures of the environment's family."""
     family = family_of(env)
-    values = log.measures(info, ending) | dict(info.get("measures") or _map_quality(env, info))
+    values = log.measures(info, ending)
+    if family == "exploration" and not info.get("collision", False):  # also where no completeness ends an episode
+        values["success"] = float(ending == "success" or values["completeness"] >= EXPLORED)
+    values |= dict(info.get("measures") or _map_quality(env, info))
     if family == "arena":
         values |= measure_drive(info, np.array(log.poses["true"]), log.scalars["clearance"], log.decisions)
     return {name: value for name, value in values.items() if name in names_for(family)}

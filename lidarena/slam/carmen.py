@@ -26,6 +26,8 @@ up to 0.9 s, 629 times); more than this is another recording."""
 _GZIP = b"\x1f\x8b"
 _KEYWORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _MAX_BEAMS = 20_000
+_PLANET = 1e8
+"""No robot's odometry says more, in metres or radians."""
 _FARTHEST = float(np.finfo(np.float32).max)
 """Ranges are kept in single precision, where a larger one would be infinite [m]."""
 _MOUNT_SPREAD = 0.02
@@ -85,7 +87,9 @@ def read_log(path: str | os.PathLike[str], skip_torn: bool = False) -> RecordedL
             entries.enter(words)
         except _TornLineError as torn:
             if not skip_torn:
-                raise LogError(f"line {number} of {where} is torn: {torn}; mend it, or skip torn lines") from None
+                raise LogError(
+                    f"line {number} of {where} is torn: {torn}; mend it, or leave torn lines out (--skip-torn)"
+                ) from None
             entries.skipped += 1
         except _ConflictError as conflict:
             raise LogError(f"line {number} of {where} {conflict}") from None
@@ -162,6 +166,7 @@ class _Entries:
     mounts: list[NDArray[np.float64]] = field(default_factory=list)
     first: _Scan | None = None
     longest: float = math.inf
+    latest: float = -math.inf
     skipped: int = 0
 
     def enter(self, words: list[str]) -> None:
@@ -175,9 +180,9 @@ class _Entries:
             raise _TornLineError(f"it begins with {words[0][:20]!r}, which is no message")
 
     def _enter(self, time: float, pose: Sequence[float], scan: _Scan | None) -> None:
-        if self.times and time < self.times[-1] - CLOCK_SLACK:
-            back = self.times[-1] - time
-            raise _ConflictError(f"is {back:.3g} s before the reading above it; time must not run backwards")
+        if time < self.latest - CLOCK_SLACK:
+            back = self.latest - time
+            raise _ConflictError(f"is {back:.3g} s before a reading above it; time must not run backwards")
         if scan is not None:
             self.first = self.first or scan
             if not scan.like(self.first):
@@ -187,6 +192,7 @@ class _Entries:
             self.ranges.append(scan.ranges)
             if scan.mount is not None:
                 self.mounts.append(scan.mount)
+        self.latest = max(self.latest, time)
         self.times.append(time)
         self.odometry.append(pose)
 
@@ -213,7 +219,7 @@ def _odom(words: list[str]) -> _Message:
     """``ODOM x y theta tv rv accel time host logger_time``."""
     if len(words) != 10:
         raise _TornLineError(f"ODOM has {len(words)} words where 10 are needed")
-    return _numbers(words[7:8], 1)[0], _numbers(words[1:4], 3), None
+    return _numbers(words[7:8], 1)[0], _pose(words[1:4]), None
 
 
 def _flaser(words: list[str]) -> _Message:
@@ -224,7 +230,7 @@ def _flaser(words: list[str]) -> _Message:
     angles = _front_angles(n)
     ranges = np.array(_numbers(words[2 : n + 2], n, least=0.0, most=_FARTHEST))
     scan = _Scan("FLASER", ranges, angles[0], angles[1] - angles[0])
-    return _numbers(words[n + 8 : n + 9], 1)[0], _numbers(words[n + 5 : n + 8], 3), scan
+    return _numbers(words[n + 8 : n + 9], 1)[0], _pose(words[n + 5 : n + 8]), scan
 
 
 def _robotlaser(words: list[str]) -> _Message:
@@ -240,7 +246,7 @@ def _robotlaser(words: list[str]) -> _Message:
     start, _, step, longest = _numbers(words[2:6], 4)
     if not (0.0 < step < math.pi and longest > 0.0):
         raise _TornLineError(f"ROBOTLASER1 has beams {step:g} rad apart, up to {longest:g} m")
-    laser, robot = np.array(_numbers(rest[0:3], 3)), _numbers(rest[3:6], 3)
+    laser, robot = np.array(_pose(rest[0:3])), _pose(rest[3:6])
     ranges = np.array(_numbers(words[9 : 9 + n], n, least=0.0, most=_FARTHEST))
     scan = _Scan("ROBOTLASER1", ranges, start, step, longest, between(np.array(robot), laser))
     return _numbers(rest[11:12], 1)[0], robot, scan
@@ -273,8 +279,15 @@ def _numbers(words: list[str], count: int, least: float = -math.inf, most: float
         raise _TornLineError(f"it has {str(error).rpartition(': ')[2][:30]} where a number is needed") from None
     if not (math.isfinite(sum(values)) and least <= min(values) and max(values) <= most):
         wrong = [value for value in values if not (math.isfinite(value) and least <= value <= most)] or [max(values)]
-        raise _TornLineError(f"it has {wrong[0]:g} where a finite number is needed, ranges from 0 on")
+        raise _TornLineError(
+            f"it has {wrong[0]:g} where a finite number is needed, of no absurd size, ranges from 0 on"
+        )
     return values
+
+
+def _pose(words: list[str]) -> list[float]:
+    """x, y, theta."""
+    return _numbers(words, 3, least=-_PLANET, most=_PLANET)
 
 
 def _count(words: list[str], least: int) -> int:

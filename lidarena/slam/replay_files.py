@@ -57,7 +57,7 @@ def save_replay(
         OSError: The disk is full or the place is not writable; what was there is left as it was.
     """
     check_folder(folder)
-    place = Path(folder)
+    place = Path(os.path.abspath(folder))  # "." has no name of its own
     picture = io.BytesIO()
     draw_replay(log, result).savefig(picture, format="png")
 

@@ -150,6 +150,45 @@ def test_a_checkpoint_of_another_version_is_refused(run: Path) -> None:
         train(small(run, "total_steps=256"), resume=run, progress=False)
 
 
+@pytest.mark.parametrize(
+    ("override", "message"),
+    [
+        ("seed=1", "is of another training, made with seed = 1 where this one has 0"),
+        ("env.keywords={noise: 0.1}", "made with env.keywords"),
+        ("ppo.learning_rate=5e-4", "made with ppo.learning_rate"),
+    ],
+)
+def test_a_checkpoint_of_another_training_is_refused(run: Path, tmp_path: Path, override: str, message: str) -> None:
+    other = train(small(tmp_path / "other", "total_steps=128", override), progress=False)
+    shutil.rmtree(run / "checkpoints")
+    shutil.copytree(other / "checkpoints", run / "checkpoints")
+    with pytest.raises(ConfigError, match=message) as refusal:
+        train(small(run, "total_steps=256"), resume=run, progress=False)
+    assert "\n" not in str(refusal.value)
+
+
+@pytest.mark.parametrize("name", ["model.safetensors", "worlds.npz", "trainer.npz"])
+def test_a_flipped_bit_is_noticed(run: Path, name: str) -> None:
+    file = run / "checkpoints" / "step_0000000000128" / name
+    content = bytearray(file.read_bytes())
+    content[-9] ^= 1
+    file.write_bytes(content)
+    with pytest.raises(ConfigError, match=f"is damaged: {name} is not the file that was saved"):
+        train(small(run, "total_steps=256"), resume=run, progress=False)
+
+
+def test_an_older_checkpoint_is_pointed_to_and_other_folders_are_passed_over(run: Path) -> None:
+    folder = run / "checkpoints"
+    shutil.copytree(folder / "step_0000000000128", folder / "step_0000000000128.bak")
+    shutil.copytree(folder / "step_0000000000128", folder / "step_0000000000192")
+    (folder / "step_abc").mkdir()
+    (folder / "step_0000000000192" / "worlds.npz").unlink()
+    with pytest.raises(ConfigError, match=r"lacks worlds.npz.*; without that folder it goes on from step 128$"):
+        train(small(run, "total_steps=256"), resume=run, progress=False)
+    shutil.rmtree(folder / "step_0000000000192")
+    train(small(run, "total_steps=256"), resume=run, progress=False)
+
+
 def test_a_refused_resumption_changes_nothing(run: Path) -> None:
     (run / "checkpoints" / "step_0000000000128" / "worlds.npz").unlink()
     before = {path: path.stat().st_mtime_ns for path in run.rglob("*")}
@@ -168,8 +207,11 @@ def test_folders_that_are_no_run(tmp_path: Path, run: Path) -> None:
 def test_a_training_killed_before_its_first_checkpoint_begins_anew(tmp_path: Path, run: Path) -> None:
     straight = train(small(tmp_path / "straight"), progress=False)
     shutil.rmtree(run / "checkpoints")
+    learned, rows = (run / "policy.safetensors").read_bytes(), (run / "progress.csv").read_bytes()
     again = train(small(run), resume=run, progress=False)
     assert equal(weights(again), weights(straight)) and curve(again) == curve(straight)
+    aside = run / "before_1"  # what it had learned before is not lost
+    assert (aside / "policy.safetensors").read_bytes() == learned and (aside / "progress.csv").read_bytes() == rows
 
 
 def test_kill_9_at_random_moments_loses_nothing(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

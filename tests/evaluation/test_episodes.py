@@ -5,6 +5,7 @@ from typing import Any
 import numpy as np
 import pytest
 
+from lidarena import baselines
 from lidarena.evaluation.episodes import policy_seed, run_episode, without_truth
 from lidarena.evaluation.measures import names_for
 from lidarena.evaluation.participants import make_env
@@ -154,3 +155,14 @@ def test_the_camera_sees_every_state() -> None:
     finished: list[int] = []
     run_episode(env, Driver(env, finish_at=3), seed=0, film=lambda env: finished.append(1))
     assert len(finished) == 3
+
+
+def test_a_whole_map_is_a_success_where_no_completeness_ends_an_episode() -> None:
+    env = make_env(
+        "lidarena/Exploration-v0", {"map": "maze:5?width=5&height=5", "stop_at": None, "max_episode_steps": 5000}
+    )
+    whole = run_episode(env, baselines.make("frontier", env), 2)
+    assert whole.ending == "policy finished"
+    assert whole.measures["completeness"] > 0.99 and whole.measures["success"] == 1.0
+    part = run_episode(env, baselines.make("frontier", env), 2, max_steps=30)
+    assert part.measures["completeness"] < 0.99 and part.measures["success"] == 0.0

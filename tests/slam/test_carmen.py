@@ -102,7 +102,16 @@ def test_torn_lines_can_be_skipped(tmp_path: Path) -> None:
         ([], "has no scans"),
         ([FLASER, FLASER.replace("FLASER 4 1.5", "FLASER 3")], "line 2 .* 3 beams .* after scans of 4 beams"),
         ([FLASER, ROBOT], "line 2 .* all scans must be alike"),
-        ([FLASER, ODOM.replace("100.0", "99.0")], "line 2 .* is 1.5 s before .*; time must not run backwards"),
+        ([FLASER.replace("1 2 0.5 100.5", "1e100 2 0.5 100.5")], r"line 1 .* torn: it has 1e\+100 where"),
+        ([ODOM.replace("ODOM 1", "ODOM -1e9"), FLASER], r"line 1 .* torn: it has -1e\+09 where"),
+        (
+            [FLASER, *(ODOM.replace("100.0", str(100.4 - 0.4 * k)) for k in range(4))],
+            "line 5 .* must not run backwards",
+        ),
+        (
+            [FLASER, ODOM.replace("100.0", "99.0")],
+            "line 2 .* is 1.5 s before a reading above it; time must not run backwards",
+        ),
     ],
 )
 def test_a_bad_log_is_refused_in_one_sentence(tmp_path: Path, lines: list[str], sentence: str) -> None:

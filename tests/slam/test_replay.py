@@ -129,6 +129,12 @@ def test_without_relations_there_are_no_errors(tmp_path: Path) -> None:
     assert (results["relations"], results["scan_updates"]) == (0, len(RESULT.readings))
 
 
+def test_the_folder_may_be_the_one_where_one_is(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    save_replay(".", LOG, RESULT)
+    assert (tmp_path / "results.json").exists()
+
+
 def arguments(tmp_path: Path, log: RecordedLog = LOG) -> list[str]:
     return ["replay", str(save_log(tmp_path / "a.log", log)), "--out", str(tmp_path / "out")]
 
