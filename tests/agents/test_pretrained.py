@@ -4,6 +4,7 @@ import gymnasium as gym
 import pytest
 
 from lidarena import agents
+from lidarena.agents.goal_choice_agent import GoalChoiceAgent
 from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.envs.corridor_shared import SHARED_ID
 from lidarena.world.refusals import PolicyFileError
@@ -34,6 +35,26 @@ def test_a_shipped_agent_drives(name: str) -> None:
         assert info["completeness"] > 0.1
     else:
         assert info["distance"] < distance
+
+
+def test_the_combined_agent_explores_a_world_that_it_was_not_trained_in() -> None:
+    env = gym.make("lidarena/Env4-v0", max_episode_steps=5000, stop_at=None)
+    policy = GoalChoiceAgent(env, agents.load("pretrained:combined"))
+    observation, info = env.reset(seed=4)
+    policy.reset(seed=0)
+    while True:
+        action = policy.act(observation, info)
+        if policy.finished:
+            break
+        observation, _, terminated, truncated, info = env.step(action)
+        assert not (terminated or truncated)
+    assert info["completeness"] > 0.98
+
+
+def test_an_agent_that_was_told_other_features_is_refused_in_one_sentence() -> None:
+    env = gym.make("lidarena/Env1-v0")
+    with pytest.raises(PolicyFileError, match=r"trained to choose by features of shape \(76,\).*: train it anew$"):
+        GoalChoiceAgent(env, agents.load("pretrained:compass"))
 
 
 def test_the_compass_agent_explores_a_world_that_it_was_not_trained_in() -> None:
