@@ -9,12 +9,12 @@ import sys
 
 from rich.console import Console
 
-from lidarena.agents.yaml_config import load_config
+from lidarena.base.errors import LidarenaError
+from lidarena.base.yaml_config import load_config
 from lidarena.evaluation import Comparison, ComparisonConfig, EpisodeError, compare
 from lidarena.evaluation.tables import NOTE, terminal_table
-from lidarena.evaluation.team_experiment import TeamExperimentConfig, is_team_experiment
-from lidarena.evaluation.team_tables import compare_planners, print_rows
-from lidarena.world.refusals import Refusal
+from lidarena.evaluation.team_planning.team_experiment import TeamExperimentConfig, is_team_experiment
+from lidarena.evaluation.team_planning.team_tables import compare_planners, print_rows
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -29,7 +29,7 @@ def main(arguments: list[str] | None = None) -> int:
             out.print(f"tables:   {folder}/table.md (also .csv and results.json)\nfigures:  {folder}/figures.png")
             return 0
         comparison = compare(load_config(options.config, ComparisonConfig, overrides), err)
-    except Refusal as refusal:
+    except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
     except (EpisodeError, OSError) as error:

@@ -10,7 +10,7 @@ import sys
 
 from lidarena import agents
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
-from lidarena.world.refusals import Refusal
+from lidarena.base.errors import LidarenaError
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -25,7 +25,7 @@ def main(arguments: list[str] | None = None) -> int:
         config = _config(options)
         print(_summary(config), flush=True)
         folder = agents.train(config, resume=options.resume, exact_out=bool(options.out))
-    except Refusal as refusal:
+    except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
     except OSError as error:

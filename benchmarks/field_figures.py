@@ -10,7 +10,7 @@ import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from lidarena.planning.potential_field import PotentialField, plan_path
+from lidarena.planning.potential_field.potential_field import PotentialField, plan_path
 from lidarena.world.arenas import Arena, load_arena
 
 FIG_4 = np.array([(29, 45, 0), (40, 45, 0), (65, 45, 0), (74, 74, 0)], dtype=np.float64)

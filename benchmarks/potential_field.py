@@ -14,9 +14,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.planning.circle_grid import astar_path
-from lidarena.planning.guided_field import plan_guided_path
-from lidarena.planning.potential_field import PathResult, PotentialField, plan_path
+from lidarena.planning.potential_field.circle_grid import astar_path
+from lidarena.planning.potential_field.guided_field import plan_guided_path
+from lidarena.planning.potential_field.potential_field import PathResult, PotentialField, plan_path
 from lidarena.world.arenas import Arena, load_arena
 from lidarena.world.barn import barn_indices, load_barn
 from lidarena.world.random_arenas import DENSITIES

@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
-from lidarena.slam.carmen import RecordedLog, read_log
-from lidarena.slam.relations import Relations, read_relations, relation_errors
-from lidarena.slam.replay import replay
-from lidarena.slam.trajectory import Trajectory, in_order
+from lidarena.slam.logs.carmen import RecordedLog, read_log
+from lidarena.slam.logs.relations import Relations, read_relations, relation_errors
+from lidarena.slam.logs.replay import replay
+from lidarena.slam.logs.trajectory import Trajectory, in_order
 
 DATA = Path(__file__).resolve().parents[2] / "shared" / "data" / "logs"
 

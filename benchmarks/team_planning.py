@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from lidarena.planning import TeamPlan, plan_team, validate_plan
 from lidarena.planning.team.floor_grid import FloorGrid
-from lidarena.planning.team.roads import UNREACHABLE, Roads, roads_of
+from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
 from lidarena.world.load import load_floorplan
 from lidarena.world.movingai import load_movingai
 from lidarena.world.scenario import load_scenario
@@ -59,27 +59,29 @@ def solve(problem: Problem, method: str, time_limit: float = 1.0) -> Answer:
     return Answer(plan, seconds)
 
 
-def largest_part(roads: Roads) -> NDArray[np.int64]:
+def largest_part(graph: GridGraph) -> NDArray[np.int64]:
     """The places of the largest part of a grid whose places are all within reach of each other."""
-    left, parts = np.ones(len(roads), np.bool_), []
+    left, parts = np.ones(len(graph), np.bool_), []
     while left.any():
-        within = roads.ahead(int(np.argmax(left))) < UNREACHABLE
+        within = graph.ahead(int(np.argmax(left))) < UNREACHABLE
         left &= ~within
         parts.append(np.flatnonzero(within))
     return max(parts, key=len)
 
 
-def draw_team(roads: Roads, robots: int, rng: np.random.Generator, allowed: NDArray[np.int64] | None = None) -> Problem:
+def draw_team(
+    graph: GridGraph, robots: int, rng: np.random.Generator, allowed: NDArray[np.int64] | None = None
+) -> Problem:
     """A random problem: starts apart from each other, goals too, every goal within reach."""
-    places = largest_part(roads) if allowed is None else allowed
-    blocked = roads.index < 0  # robots of this radius stand anywhere else
+    places = largest_part(graph) if allowed is None else allowed
+    blocked = graph.index < 0  # robots of this radius stand anywhere else
     while True:
         ends = np.stack([rng.choice(places, robots, replace=False) for _ in range(2)])
-        cells = roads.cells[ends].astype(float)
+        cells = graph.cells[ends].astype(float)
         gaps = np.linalg.norm(cells[:, :, None] - cells[:, None], axis=-1) + 99.0 * np.eye(robots)
-        reached = all(roads.ahead(int(g))[s] < UNREACHABLE for s, g in ends.T)
-        if reached and (robots == 1 or gaps.min() >= max(roads.apart, 1.0)) and (ends[0] != ends[1]).all():
-            return Problem(blocked, roads.cells[ends[0]], roads.cells[ends[1]], roads.radius)
+        reached = all(graph.ahead(int(g))[s] < UNREACHABLE for s, g in ends.T)
+        if reached and (robots == 1 or gaps.min() >= max(graph.apart, 1.0)) and (ends[0] != ends[1]).all():
+            return Problem(blocked, graph.cells[ends[0]], graph.cells[ends[1]], graph.radius)
 
 
 def problems(
@@ -91,10 +93,10 @@ def problems(
     allowed: NDArray[np.int64] | None = None,
 ) -> Iterator[Problem]:
     """Random problems on a grid."""
-    roads = roads_of(blocked, 8, radius)
+    graph = grid_graph_of(blocked, 8, radius)
     rng = np.random.default_rng([seed, robots])
     for _ in range(count):
-        yield draw_team(roads, robots, rng, allowed)._replace(blocked=blocked)
+        yield draw_team(graph, robots, rng, allowed)._replace(blocked=blocked)
 
 
 def conflicting(candidates: Iterator[Problem]) -> Iterator[Problem]:
@@ -111,11 +113,11 @@ def floor(name: str) -> tuple[NDArray[np.bool_], NDArray[np.int64] | None]:
     """A built-in floor plan at 20 cm, and the places that robots are drawn from."""
     grid = FloorGrid.of(load_floorplan(name), 0.2)
     places = team_places(name)
-    roads = roads_of(grid.blocked, 8, grid.in_cells(ROBOT))
+    graph = grid_graph_of(grid.blocked, 8, grid.in_cells(ROBOT))
     if places is None:
         return grid.blocked, None
     cells = grid.cells(places.starts)
-    return grid.blocked, roads.index[cells[:, 0], cells[:, 1]].astype(np.int64)
+    return grid.blocked, graph.index[cells[:, 0], cells[:, 1]].astype(np.int64)
 
 
 def cluttered(seed: int, side: int = 48, boxes: int = 45) -> NDArray[np.bool_]:
@@ -183,7 +185,7 @@ def joint(data: Path, count: int) -> None:
     assert places is not None
     cells = grid.cells(places.starts)
     for radius in (0.0, grid.in_cells(ROBOT)):
-        allowed = roads_of(grid.blocked, 8, radius).index[cells[:, 0], cells[:, 1]].astype(np.int64)
+        allowed = grid_graph_of(grid.blocked, 8, radius).index[cells[:, 0], cells[:, 1]].astype(np.int64)
         report = f"office, predefined places, radius {radius * 0.6:.1f} m"
         compare_with_optimum(report, problems(grid.blocked, radius, 2, 40 * count, 2, allowed), count, 0, True)
     if (data / "office").is_dir():

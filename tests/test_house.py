@@ -7,8 +7,8 @@ import pytest
 
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "lidarena"
-FLOORS = {"world": 0, "slam": 1, "planning": 1, "temporal": 1, "vision": 1, "envs": 2, "baselines": 3, "agents": 4}
-FLOORS["evaluation"] = 5
+FLOORS = {"base": 0, "world": 1, "slam": 2, "planning": 2, "temporal": 2, "vision": 2, "envs": 3, "baselines": 4}
+FLOORS |= {"agents": 5, "evaluation": 6, "cli": 7}
 SOURCES = sorted(PACKAGE.rglob("*.py"))
 
 

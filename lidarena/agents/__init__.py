@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from lidarena.agents.shipped import pretrained
     from lidarena.agents.training import train
     from lidarena.agents.training_config import TrainingConfig
-    from lidarena.agents.yaml_config import ConfigModel, dump_config, load_config
+    from lidarena.base.yaml_config import ConfigModel, dump_config, load_config
 
 __all__ = [
     "ConfigModel",
@@ -35,23 +35,23 @@ __all__ = [
 ]
 
 _HOMES = {
-    "ConfigModel": "yaml_config",
-    "LearnedPolicy": "learned_policy",
-    "TrainingConfig": "training_config",
-    "TrainingStopped": "interruption",
-    "dump_config": "yaml_config",
-    "load": "policy_file",
-    "load_config": "yaml_config",
-    "pretrained": "shipped",
-    "save_policy": "policy_file",
-    "train": "training",
+    "ConfigModel": "lidarena.base.yaml_config",
+    "LearnedPolicy": "lidarena.agents.learned_policy",
+    "TrainingConfig": "lidarena.agents.training_config",
+    "TrainingStopped": "lidarena.agents.interruption",
+    "dump_config": "lidarena.base.yaml_config",
+    "load": "lidarena.agents.policy_file",
+    "load_config": "lidarena.base.yaml_config",
+    "pretrained": "lidarena.agents.shipped",
+    "save_policy": "lidarena.agents.policy_file",
+    "train": "lidarena.agents.training",
 }
 
 
 def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    return getattr(import_module(f"{__name__}.{_HOMES[name]}"), name)
+    return getattr(import_module(_HOMES[name]), name)
 
 
 def __dir__() -> list[str]:

@@ -6,7 +6,7 @@ import torch
 from stable_baselines3.common.policies import ActorCriticPolicy
 from torch import nn
 
-from lidarena.baselines.frontier_features import NAMES, RULE
+from lidarena.baselines.exploration.frontier_features import NAMES, RULE
 
 _SHARPNESS = 0.01
 """Scale of what the layers add to the rule before training."""

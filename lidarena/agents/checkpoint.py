@@ -26,8 +26,8 @@ from stable_baselines3 import PPO
 
 from lidarena.agents.networks import set_weights, weights_of
 from lidarena.agents.vec_env import BatchVecEnv, Restorable
-from lidarena.world.atomic_files import write_folder
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
+from lidarena.base.files import write_folder
 
 Arrays = dict[str, NDArray[Any]]
 

@@ -8,7 +8,7 @@ from gymnasium import spaces
 from numpy.typing import NDArray
 from stable_baselines3.common.policies import ActorCriticPolicy
 
-from lidarena.world.refusals import PolicyFileError
+from lidarena.base.errors import PolicyFileError
 
 
 class LearnedPolicy:

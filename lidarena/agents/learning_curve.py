@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping
 from pathlib import Path
 
-from lidarena.world.atomic_files import write_text
+from lidarena.base.files import write_text
 
 FILE = "progress.csv"
 

@@ -17,8 +17,8 @@ from torch import nn
 
 from lidarena.agents.candidate_policy import CandidatePolicy
 from lidarena.agents.training_config import Activation, Layers, PolicyClass, PolicyConfig
-from lidarena.agents.yaml_config import ConfigModel
-from lidarena.world.refusals import ConfigError, PolicyFileError
+from lidarena.base.errors import ConfigError, PolicyFileError
+from lidarena.base.yaml_config import ConfigModel
 
 ACTIVATIONS: dict[str, type[nn.Module]] = {
     "tanh": nn.Tanh,

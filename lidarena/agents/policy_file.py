@@ -19,9 +19,9 @@ from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.networks import Architecture, all_finite, describe, rebuild, set_weights, weights_of
 from lidarena.agents.shipped import resolve
 from lidarena.agents.training_config import EnvironmentConfig
-from lidarena.agents.yaml_config import ConfigModel
-from lidarena.world.atomic_files import write_bytes, write_text
-from lidarena.world.refusals import PolicyFileError
+from lidarena.base.errors import PolicyFileError
+from lidarena.base.files import write_bytes, write_text
+from lidarena.base.yaml_config import ConfigModel
 
 FORMAT = "lidarena-policy"
 VERSION = 1

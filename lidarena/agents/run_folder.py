@@ -6,8 +6,8 @@ from typing import Any
 from lidarena.agents import checkpoint
 from lidarena.agents.learning_curve import FILE as CURVE_FILE
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
-from lidarena.agents.yaml_config import load_config
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
+from lidarena.base.yaml_config import load_config
 
 POLICY_FILES = ("policy.safetensors", "policy.json")
 """What `lidarena.agents.load` reads."""

@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from lidarena.world.refusals import PolicyFileError, suggest
+from lidarena.base.errors import PolicyFileError, suggest
 
 PREFIX = "pretrained:"
 """What a path to one of them begins with, wherever a run folder may stand."""

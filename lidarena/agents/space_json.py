@@ -7,7 +7,7 @@ import numpy as np
 from gymnasium import spaces
 from numpy.typing import NDArray
 
-from lidarena.world.refusals import PolicyFileError
+from lidarena.base.errors import PolicyFileError
 
 _MOST_NUMBERS = 100_000_000
 

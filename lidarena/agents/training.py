@@ -18,7 +18,6 @@ from stable_baselines3.common.vec_env import VecEnv, VecNormalize
 from torch.distributions import Distribution
 
 from lidarena.agents import checkpoint, run_folder
-from lidarena.agents.goal_choice_env import register_goal_choice
 from lidarena.agents.interruption import StopRequest, TrainingStopped, stop_on_signal
 from lidarena.agents.learning_curve import LearningCurve
 from lidarena.agents.networks import ACTIVATIONS, all_finite, class_for, policy_class, weights_of
@@ -26,8 +25,8 @@ from lidarena.agents.policy_file import save_policy
 from lidarena.agents.progress import ProgressDisplay, show_progress
 from lidarena.agents.training_config import CONFIG_FILE, EnvironmentConfig, Linear, TrainingConfig
 from lidarena.agents.vec_env import BatchVecEnv
-from lidarena.agents.yaml_config import dump_config
-from lidarena.world.refusals import ConfigError, suggest
+from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.yaml_config import dump_config
 
 
 def train(
@@ -90,7 +89,6 @@ def make_batch(env: EnvironmentConfig, num_envs: int) -> BatchVecEnv:
         ConfigError: There is no such environment or keyword, or it has no batch of its own.
     """
     module, _, name = env.id.rpartition(":")
-    register_goal_choice()
     try:
         batch = gym.make_vec(env.id, num_envs=num_envs, vectorization_mode="vector_entry_point", **env.keywords)
     except ModuleNotFoundError:

@@ -5,7 +5,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, ConfigDict, Field, field_validator, model_validator
 
-from lidarena.agents.yaml_config import ConfigModel
+from lidarena.base.yaml_config import ConfigModel
 
 PolicyClass = Literal["MlpPolicy", "CnnPolicy", "MultiInputPolicy", "CandidatePolicy"]
 Activation = Literal["tanh", "relu", "leaky_relu", "elu", "silu", "gelu"]

@@ -12,7 +12,7 @@ from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv
 from stable_baselines3.common.vec_env.base_vec_env import VecEnvObs, VecEnvStepReturn
 
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
 
 Arrays = dict[str, NDArray[Any]]
 

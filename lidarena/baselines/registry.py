@@ -5,8 +5,8 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+from lidarena.base.errors import ConfigError, suggest
 from lidarena.baselines.policy import Policy
-from lidarena.world.refusals import ConfigError, suggest
 
 Made = TypeVar("Made", bound=Callable[..., Policy])
 

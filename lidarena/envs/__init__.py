@@ -1,8 +1,8 @@
 """The environment families as Gymnasium environments, and their registry."""
 
-from lidarena.envs.arena import ArenaEnv, BatchedArena
-from lidarena.envs.corridor_central import BatchedCorridor, CorridorCentralEnv
-from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
+from lidarena.envs.arena.env import ArenaEnv, BatchedArena
+from lidarena.envs.corridor.central_env import BatchedCorridor, CorridorCentralEnv
+from lidarena.envs.exploration.env import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import register_all
 from lidarena.envs.worker_threads import set_num_threads
 

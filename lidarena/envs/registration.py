@@ -4,13 +4,13 @@ from typing import Any
 
 import gymnasium as gym
 
-from lidarena.envs.arena import ArenaEnv
-from lidarena.envs.corridor_central import CorridorCentralEnv
-from lidarena.envs.corridor_shared import register_shared
-from lidarena.envs.exploration import ExplorationEnv
+from lidarena.envs.arena.env import ArenaEnv
+from lidarena.envs.corridor.central_env import CorridorCentralEnv
+from lidarena.envs.corridor.shared_env import register_shared
+from lidarena.envs.exploration.env import ExplorationEnv
 
 EPISODE_STEPS = 1000
-"""The paper's training cap."""
+"""Yang et al.'s training cap."""
 ARENA_STEPS = 500
 """Five times what it takes to cross an arena."""
 CENTRAL_ID = "lidarena/CorridorCentral-v0"
@@ -42,7 +42,7 @@ def register_all() -> None:
             gym.register(
                 id=name,
                 entry_point="lidarena.envs.registration:make_single",
-                vector_entry_point="lidarena.envs.exploration:BatchedExploration",
+                vector_entry_point="lidarena.envs.exploration.env:BatchedExploration",
                 max_episode_steps=EPISODE_STEPS,
                 kwargs={"map": plan},
             )
@@ -50,7 +50,7 @@ def register_all() -> None:
         gym.register(
             id="lidarena/Arena-v0",
             entry_point="lidarena.envs.registration:make_single_arena",
-            vector_entry_point="lidarena.envs.arena:BatchedArena",
+            vector_entry_point="lidarena.envs.arena.env:BatchedArena",
             max_episode_steps=ARENA_STEPS,
         )
 
@@ -61,6 +61,6 @@ def _register_corridor() -> None:
         gym.register(
             id=CENTRAL_ID,
             entry_point="lidarena.envs.registration:make_central",
-            vector_entry_point="lidarena.envs.corridor_central:BatchedCorridor",
+            vector_entry_point="lidarena.envs.corridor.central_env:BatchedCorridor",
             max_episode_steps=EPISODE_STEPS,
         )

@@ -16,7 +16,7 @@ from typing import Any, cast
 
 from numba import config
 
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
 
 _threads = int(cast(Any, config).NUMBA_NUM_THREADS)  # numba sets its attributes at run time
 

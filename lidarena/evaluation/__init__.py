@@ -1,6 +1,6 @@
 """Comparing policies: episodes on all cores, means with intervals, tables, pictures and videos.
 
-from lidarena.agents.yaml_config import load_config
+from lidarena.base.yaml_config import load_config
 from lidarena.evaluation import ComparisonConfig, compare
 
 comparison = compare(load_config("configs/compare/exploration.yaml", ComparisonConfig))

@@ -18,7 +18,7 @@ from lidarena.evaluation.results import (
     write_results,
     write_results_folder,
 )
-from lidarena.evaluation.runner import list_tasks, rehearse, run_tasks
+from lidarena.evaluation.runner import dry_run, list_tasks, run_tasks
 from lidarena.evaluation.tables import csv_text, latex_text, markdown_text
 
 
@@ -54,7 +54,7 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
         The rows of the tables, and where the files are.
 
     Raises:
-        Refusal: Something in the configuration cannot be had; mostly within seconds.
+        LidarenaError: Something in the configuration cannot be had; mostly within seconds.
         EpisodeError: An environment or a policy raised.
         OSError: The place of the results is not writable or full.
     """
@@ -62,8 +62,8 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
     check_folder(config.folder)
     check(config)
     count = len(config.envs) * len(config.policies)
-    console.print(f"rehearsing {count} pairs of environment and policy", highlight=False)
-    rehearse(config)
+    console.print(f"trying {count} pairs of environment and policy", highlight=False)
+    dry_run(config)
     found: list[list[Cell]] = []
     rows: list[Row] = []
     drawn: list[Path] = []

@@ -6,7 +6,7 @@ from typing import Annotated, Any, Literal, Self
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from lidarena.agents.yaml_config import ConfigModel
+from lidarena.base.yaml_config import ConfigModel
 
 EVALUATION_KEYWORDS = ("expose_truth", "render_mode")
 """Keywords of the environments that the evaluation itself sets."""

@@ -11,9 +11,9 @@ from numpy.typing import NDArray
 
 from lidarena.baselines import Policy
 from lidarena.baselines.registry import family_of
-from lidarena.evaluation.arena_measures import measure_drive
-from lidarena.evaluation.map_quality import map_iou
-from lidarena.evaluation.measures import names_for
+from lidarena.evaluation.measures.arena import measure_drive
+from lidarena.evaluation.measures.exploration import map_iou
+from lidarena.evaluation.measures.table_columns import names_for
 from lidarena.evaluation.participants import Env
 from lidarena.evaluation.statistics import geometric_mean
 

@@ -9,12 +9,12 @@ import gymnasium as gym
 
 import lidarena  # noqa: F401  registers the environments, also in a spawned worker
 from lidarena import baselines
-from lidarena.agents.goal_choice_env import GOAL_CHOICE_ID
+from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.agents.shipped import resolve
+from lidarena.base.errors import ConfigError, suggest
 from lidarena.baselines import Policy
-from lidarena.envs.corridor_shared import SHARED_ID
+from lidarena.envs.corridor.shared_env import SHARED_ID
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
-from lidarena.world.refusals import ConfigError, suggest
 
 Env = gym.Env[Any, Any]
 
@@ -51,11 +51,11 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
         if agent is None:
             return env, _make_untrained(entry, env)
         if agent.env_id == GOAL_CHOICE_ID:
-            from lidarena.agents.goal_choice_agent import GoalChoiceAgent
+            from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
 
             return env, GoalChoiceAgent(env, agent)
         if agent.env_id == SHARED_ID:
-            from lidarena.agents.shared_fleet_agent import SharedFleetAgent
+            from lidarena.agents.corridor.shared_fleet_agent import SharedFleetAgent
 
             return env, SharedFleetAgent(env, agent)
         if agent.action_space != env.action_space:

@@ -12,9 +12,10 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
+from lidarena.base.errors import ConfigError
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode
-from lidarena.evaluation.measures import BY_NAME, MEASURES, Measure
+from lidarena.evaluation.measures.table_columns import BY_NAME, MEASURES, Measure
 from lidarena.evaluation.statistics import (
     Interval,
     bootstrap,
@@ -22,7 +23,6 @@ from lidarena.evaluation.statistics import (
     paired_share_difference,
     share_interval,
 )
-from lidarena.world.refusals import ConfigError
 
 RESULTS_FILE = "results.json"
 PACKAGES = ("lidarena", "gymnasium", "numba", "numpy", "pymunk", "scipy", "stable-baselines3", "torch")

@@ -15,8 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.agents.learning_curve import FILE
+from lidarena.base.errors import ConfigError, LidarenaError
 from lidarena.evaluation.pictures import LINES
-from lidarena.world.refusals import ConfigError, Refusal
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -125,7 +125,7 @@ def main(arguments: list[str] | None = None) -> int:
         figure = draw_curves([Trainings.parse(text) for text in options.trainings])
         Path(options.out).parent.mkdir(parents=True, exist_ok=True)
         figure.savefig(options.out)
-    except Refusal as refusal:
+    except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
     except OSError as error:

@@ -16,11 +16,11 @@ from typing import Any, NoReturn
 import cv2
 import numba
 
+from lidarena.base.errors import LidarenaError
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
 from lidarena.evaluation.participants import make_participants
-from lidarena.evaluation.videos import Film
-from lidarena.world.refusals import Refusal
+from lidarena.evaluation.videos import VideoRecorder
 
 REHEARSED_STEPS = 30
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
@@ -91,13 +91,13 @@ def place_of(env: EnvEntry, policy: PolicyEntry, suffix: str) -> Path:
     return Path(file_name(env.label)) / f"{file_name(policy.title)}.{suffix}"
 
 
-def rehearse(config: ComparisonConfig) -> None:
+def dry_run(config: ComparisonConfig) -> None:
     """Run the first steps of every policy in every environment, so that mistakes show within seconds.
 
     It also compiles what the policies call, once instead of in every worker, and before anything is timed.
 
     Raises:
-        Refusal: A keyword, map, option or agent is refused.
+        LidarenaError: A keyword, map, option or agent is refused.
         EpisodeError: Something else went wrong.
     """
     pairs = [(env, policy) for env in config.envs for policy in config.policies]
@@ -118,7 +118,7 @@ def run_tasks(
         One episode per task, in the tasks' order.
 
     Raises:
-        Refusal: A task was refused.
+        LidarenaError: A task was refused.
         EpisodeError: A task raised, or a process died. What had not begun is dropped.
     """
     count = min(workers or available_cores(), max(1, len(tasks)))
@@ -179,7 +179,7 @@ def _guarded(task: Task) -> Episode | _Failure:
     """Run a task; whatever it raises comes back as text."""
     try:
         return _run(task)
-    except Refusal as refusal:
+    except LidarenaError as refusal:
         return _Failure(str(refusal), traceback.format_exc(), refused=True)
     except Exception as error:
         lines = str(error).strip().splitlines()
@@ -189,7 +189,7 @@ def _guarded(task: Task) -> Episode | _Failure:
 
 def _raise(task: Task, failure: _Failure) -> NoReturn:
     if failure.refused:
-        raise Refusal(f"environment {task.env.label!r}, policy {task.policy.title!r}: {failure.sentence}")
+        raise LidarenaError(f"environment {task.env.label!r}, policy {task.policy.title!r}: {failure.sentence}")
     raise EpisodeError(f"{task}: {failure.sentence}", failure.report)
 
 
@@ -200,7 +200,7 @@ def _run(task: Task) -> Episode:
         how: dict[str, Any] = {"max_steps": task.max_steps, "keep_trace": task.keep_trace}
         if task.film is None:
             return run_episode(env, policy, task.seed, **how)
-        with Film(task.film) as film:
+        with VideoRecorder(task.film) as film:
             return run_episode(env, policy, task.seed, film=film.add, **how)
     finally:
         env.close()

@@ -11,7 +11,7 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from lidarena.evaluation.measures import MEASURES, Measure
+from lidarena.evaluation.measures.table_columns import MEASURES, Measure
 from lidarena.evaluation.results import Row, best, contenders, difference
 from lidarena.evaluation.statistics import LEAST_SAMPLES, Interval
 

@@ -9,8 +9,8 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
+from lidarena.base.errors import ConfigError
 from lidarena.evaluation.participants import Env
-from lidarena.world.refusals import ConfigError
 
 SPEED = 8
 """How many times faster than the simulated time a video plays."""
@@ -22,7 +22,7 @@ GIF_FRAMES = 300
 GIF_WIDTH = 640
 
 
-class Film:
+class VideoRecorder:
     """A video of one episode; a context manager that finishes the file when it ends.
 
     An MP4 is written frame by frame, so its length costs no memory. A GIF keeps at most `GIF_FRAMES` frames of at

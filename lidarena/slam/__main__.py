@@ -12,12 +12,12 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from lidarena.slam.carmen import read_log
-from lidarena.slam.relations import RelationErrors, check_overlap, read_relations, relation_errors
-from lidarena.slam.replay import Progress as Advance
-from lidarena.slam.replay import Replay, replay
-from lidarena.slam.replay_files import check_folder, save_replay
-from lidarena.world.refusals import Refusal
+from lidarena.base.errors import LidarenaError
+from lidarena.slam.logs.carmen import read_log
+from lidarena.slam.logs.relations import RelationErrors, check_overlap, read_relations, relation_errors
+from lidarena.slam.logs.replay import Progress as Advance
+from lidarena.slam.logs.replay import Replay, replay
+from lidarena.slam.logs.replay_files import check_folder, save_replay
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -26,7 +26,7 @@ def main(arguments: list[str] | None = None) -> int:
     out = options.out or Path("results") / Path(options.log).name.split(".")[0]
     try:
         _replay(options, Path(out))
-    except Refusal as refusal:
+    except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
     except OSError as error:

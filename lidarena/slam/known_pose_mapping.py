@@ -5,10 +5,10 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps, trace_scan
-from lidarena.slam.particle_filter_state import FilterParameters
+from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.slam.scan_outline import Outlines, empty_outlines
-from lidarena.world.kernels import leaf
 
 
 class KnownPoseMapper:

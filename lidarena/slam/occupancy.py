@@ -12,8 +12,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import inlined, leaf
 from lidarena.slam.scan_outline import Outlines, outline_scan
-from lidarena.world.kernels import inlined, leaf
 
 OCCUPIED_SHARE = 0.25
 """A cell is occupied where more than this share of what reached it ended there (gmapping's threshold)."""

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import inlined, leaf
+from lidarena.base.jit import inlined, leaf
 
 GAP = 0.1
 """Widest gap between two beams that counts as seen [m]."""

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import leaf
+from lidarena.base.jit import leaf
 
 COVARIANCE_FLOOR = (4e-6, 4e-6, 1e-6)
 """Added to the diagonal of a pose's covariance (m², m², rad²): what the scan matcher itself leaves open, 2 mm

@@ -7,18 +7,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lidarena.base.errors import MapError, suggest
 from lidarena.world import barn
 from lidarena.world.floorplan import Bounds, Floorplan
 from lidarena.world.load import load_floorplan, read_options, read_seed
 from lidarena.world.random_arenas import DENSITY, random_arena_shapes, u_trap_shapes
-from lidarena.world.refusals import MapError, suggest
 
 Point = tuple[float, float]
 
 PRINTED = ((10.0, 90.0), (40.0, 45.0), (65.0, 45.0), (74.0, 74.0))
 """The obstacles that Yang et al. print (m); the text's "…" hides the trap near (15, 15)."""
 YANG_RADIUS = 0.8
-"""Of these obstacles (m). The paper's are points, which no lidar sees and which let a point robot through the trap."""
+"""Of these obstacles (m). Yang et al.'s are points, which no lidar sees, and a point robot slips through the trap."""
 YANG_BOUNDS = (-5.0, -5.0, 95.0, 95.0)
 """The 100 m room, moved by 5 m: the printed start (0, 0) would stand in its corner."""
 
@@ -35,7 +35,7 @@ class Arena:
         start: x, y [m].
         goal: x, y [m].
         bounds: The room, x_min, y_min, x_max, y_max [m]; its walls are obstacles.
-        robot_radius: Of the robot that belongs here [m]; 0 is the paper's point.
+        robot_radius: Of the robot that belongs here [m]; 0 is Yang et al.'s point.
         plan: The floor plan that it was made of, whose edges the circles cover; None for all others.
     """
 
@@ -49,7 +49,7 @@ class Arena:
 
     @property
     def scale(self) -> float:
-        """The power of ten nearest to the longer side over the paper's 100 m; floor plans are drawn at a tenth."""
+        """The power of ten nearest to the longer side over Yang et al.'s 100 m; floor plans are drawn at a tenth."""
         side = max(self.bounds[2] - self.bounds[0], self.bounds[3] - self.bounds[1])
         return 0.1 if self.plan is not None else 10.0 ** round(math.log10(side / 100.0))
 

@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.refusals import MapError
+from lidarena.base.errors import MapError
 
 START, GOAL = (-2.25, 3.0), (-2.25, 13.0)
 """Of every world [m]."""

@@ -1,6 +1,6 @@
 """The four circuits of the active-SLAM paper, drawn once.
 
-The paper (Alcalde et al., "DA-SLAM") prints outer sizes and one sentence on each; its pictures are not public. These
+Yang et al. (Alcalde et al., "DA-SLAM") prints outer sizes and one sentence on each; its pictures are not public. These
 drawings keep the sizes and the sentences. All have their lower-left outer corner at (0, 0), walls 0.1 m thick whose
 outer faces lie on the stated size, and at least 0.8 m of clear width everywhere.
 """

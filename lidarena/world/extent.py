@@ -2,7 +2,7 @@
 
 import math
 
-from lidarena.world.refusals import MapError
+from lidarena.base.errors import MapError
 
 MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 2.0
 """Sides of a cell that are believed [m]."""

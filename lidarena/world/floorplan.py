@@ -7,8 +7,8 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lidarena.base.errors import MapError
 from lidarena.world.raster import Raster, rasterize
-from lidarena.world.refusals import MapError
 
 Pose = tuple[float, float, float]
 Bounds = tuple[float, float, float, float]

@@ -13,9 +13,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import kernel, leaf
+from lidarena.base.random_streams import normal
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.kernels import kernel, leaf
-from lidarena.world.random_streams import normal
 
 TILE = 1.0
 """Side of the tiles by which edges are looked up [m]."""
@@ -38,7 +38,7 @@ class LidarSpec(NamedTuple):
     noise: float = 0.01
 
 
-class Scenery(NamedTuple):
+class MapGeometry(NamedTuple):
     """Floor plans laid out for the kernel; ``P`` plans, ``T`` tiles.
 
     Attributes:
@@ -70,7 +70,7 @@ class Lidar:
 
     def __init__(self, plans: Sequence[Floorplan], spec: LidarSpec | None = None) -> None:
         self.spec = spec or LidarSpec()
-        self.scenery = _lay_out(plans, self.spec.max_range)
+        self.geometry = _lay_out(plans, self.spec.max_range)
         angles = np.arange(self.spec.beams) * (2 * np.pi / self.spec.beams)
         self.directions = np.stack([np.cos(angles), np.sin(angles)])
 
@@ -84,7 +84,7 @@ class Lidar:
         """
         worlds, robots = poses.shape[:2]
         ranges = np.empty((worlds, robots, self.spec.beams))
-        cast_beams(0, worlds, poses, plan, radius, self.scenery, self.directions, self.spec.max_range, ranges)
+        cast_beams(0, worlds, poses, plan, radius, self.geometry, self.directions, self.spec.max_range, ranges)
         return ranges
 
 
@@ -95,7 +95,7 @@ def cast_beams(
     poses: NDArray[np.float64],
     plan: NDArray[np.int64],
     radius: float,
-    scenery: Scenery,
+    geometry: MapGeometry,
     directions: NDArray[np.float64],
     max_range: float,
     ranges: NDArray[np.float64],
@@ -108,7 +108,7 @@ def cast_beams(
             inverse = ranges[w, r]  # inverse ranges until the end
             for k in range(beams):
                 inverse[k] = 1.0 / max_range
-            _see_plan(x, y, theta, plan[w], scenery, max_range, directions, inverse)
+            _see_plan(x, y, theta, plan[w], geometry, max_range, directions, inverse)
             if radius > 0.0:
                 for other in range(poses.shape[1]):
                     if other != r:
@@ -123,29 +123,29 @@ def _see_plan(
     y: float,
     theta: float,
     plan: int,
-    scenery: Scenery,
+    geometry: MapGeometry,
     max_range: float,
     directions: NDArray[np.float64],
     inverse: NDArray[np.float64],
 ) -> None:
     """Raise ``inverse`` (beams,) to the inverse ranges of one plan's edges and circles near (x, y)."""
-    row = math.floor((y - scenery.tile_origin[plan, 1]) / TILE)
-    column = math.floor((x - scenery.tile_origin[plan, 0]) / TILE)
-    row = min(max(row, 0), scenery.tile_shape[plan, 0] - 1)
-    column = min(max(column, 0), scenery.tile_shape[plan, 1] - 1)
-    tile = scenery.first_tile[plan] + row * scenery.tile_shape[plan, 1] + column
-    count = scenery.edges.shape[0]
+    row = math.floor((y - geometry.tile_origin[plan, 1]) / TILE)
+    column = math.floor((x - geometry.tile_origin[plan, 0]) / TILE)
+    row = min(max(row, 0), geometry.tile_shape[plan, 0] - 1)
+    column = min(max(column, 0), geometry.tile_shape[plan, 1] - 1)
+    tile = geometry.first_tile[plan] + row * geometry.tile_shape[plan, 1] + column
+    count = geometry.edges.shape[0]
     cos, sin = math.cos(theta), math.sin(theta)
-    for i in range(scenery.tile_start[tile], scenery.tile_start[tile + 1]):
-        item = scenery.items[i]
+    for i in range(geometry.tile_start[tile], geometry.tile_start[tile + 1]):
+        item = geometry.items[i]
         if item < count:
-            x1, y1, x2, y2 = scenery.edges[item]
+            x1, y1, x2, y2 = geometry.edges[item]
             # into the robot's frame, where beam k always points in direction k
             ax, ay = (x1 - x) * cos + (y1 - y) * sin, (y1 - y) * cos - (x1 - x) * sin
             bx, by = (x2 - x) * cos + (y2 - y) * sin, (y2 - y) * cos - (x2 - x) * sin
             _see_edge(ax, ay, bx, by, max_range, directions, inverse)
         else:
-            cx, cy, radius = scenery.circles[item - count]
+            cx, cy, radius = geometry.circles[item - count]
             reach = max_range + radius
             if (cx - x) * (cx - x) + (cy - y) * (cy - y) < reach * reach:
                 _see_circle(cx - x, cy - y, radius, theta, directions, inverse)
@@ -247,7 +247,7 @@ def add_range_noise(
                 scans[w, r, k] = min(max(value, 0.0), max_range)
 
 
-def _lay_out(plans: Sequence[Floorplan], max_range: float) -> Scenery:
+def _lay_out(plans: Sequence[Floorplan], max_range: float) -> MapGeometry:
     edges = np.vstack([plan.edges for plan in plans])
     circles = np.vstack([plan.circles for plan in plans])
     starts, items, first_tile, origins, shapes = [np.zeros(1, np.int64)], [], [], [], []
@@ -269,7 +269,7 @@ def _lay_out(plans: Sequence[Floorplan], max_range: float) -> Scenery:
         tiles += int(rows * columns)
         edge_offset += len(plan.edges)
         circle_offset += len(plan.circles)
-    return Scenery(
+    return MapGeometry(
         edges,
         circles,
         np.array(first_tile, np.int64),

@@ -5,12 +5,12 @@ from functools import lru_cache
 from pathlib import Path
 from urllib.parse import parse_qsl
 
+from lidarena.base.errors import MapError, suggest
 from lidarena.world import builtin
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.map_server import load_map, read_description
 from lidarena.world.maze import generate_maze
 from lidarena.world.movingai import movingai_floorplan
-from lidarena.world.refusals import MapError, suggest
 
 _MAZE_OPTIONS = {
     "width": "width_m",

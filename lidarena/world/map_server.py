@@ -13,9 +13,9 @@ import numpy as np
 import yaml
 from numpy.typing import NDArray
 
+from lidarena.base.errors import MapError
 from lidarena.world.extent import check_extent, check_resolution
 from lidarena.world.picture import read_picture
-from lidarena.world.refusals import MapError
 
 FREE_THRESH, OCCUPIED_THRESH = 0.196, 0.65
 """What the map savers write, and what is taken where a YAML file names no threshold."""

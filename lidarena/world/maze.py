@@ -5,9 +5,9 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.errors import MapError
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.lattice import LatticeWalls
-from lidarena.world.refusals import MapError
 
 MIN_CORRIDOR, MAX_CORRIDOR = 0.8, 5.0
 """Clear widths of a corridor that are allowed [m]."""

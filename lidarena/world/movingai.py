@@ -6,9 +6,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.errors import MapError
 from lidarena.world.extent import check_extent, check_resolution
 from lidarena.world.floorplan import Floorplan, Pose
-from lidarena.world.refusals import MapError
 
 PASSABLE = ".GS"
 """Ground and swamp."""

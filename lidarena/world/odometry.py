@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import leaf
-from lidarena.world.random_streams import normal
+from lidarena.base.jit import leaf
+from lidarena.base.random_streams import normal
 
 
 class OdometryNoise(NamedTuple):

@@ -9,8 +9,8 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
+from lidarena.base.jit import inlined, leaf
 from lidarena.world.floorplan import Floorplan, Pose
-from lidarena.world.kernels import inlined, leaf
 
 _SLOP = 1e-3
 """Overlap that contacts tolerate [m]; pymunk's default of 0.1 is meant for pixels."""
@@ -24,7 +24,7 @@ class RobotSpec(NamedTuple):
     Attributes:
         radius: Of the disc [m].
         mass: [kg].
-        max_speed: Fastest forward speed that a command may ask for [m/s]; the paper drives at 0.5.
+        max_speed: Fastest forward speed that a command may ask for [m/s]; Yang et al. drives at 0.5.
         max_turn_rate: Fastest turn that a command may ask for [rad/s].
         substep: Longest time step of the physics while the robot is near something [s].
     """

@@ -8,8 +8,8 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.errors import MapError
 from lidarena.world.extent import check_extent
-from lidarena.world.refusals import MapError
 
 _PNG = b"\x89PNG\r\n\x1a\n"
 _PNM_FIELDS = re.compile(rb"P[25](?:\s+|\s*#[^\n]*\n)+(\d+)(?:\s+|\s*#[^\n]*\n)+(\d+)(?:\s+|\s*#[^\n]*\n)+(\d+)\s")

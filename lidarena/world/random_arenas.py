@@ -5,8 +5,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.errors import MapError
 from lidarena.world.floorplan import Bounds
-from lidarena.world.refusals import MapError
 
 Shapes = tuple[NDArray[np.float64], tuple[float, float], tuple[float, float], Bounds, float]
 """Circles (K, 3), start, goal, bounds, radius of the robot; all in metres."""

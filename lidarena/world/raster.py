@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import leaf
+from lidarena.base.jit import leaf
 
 CLEARANCE_CAP = 1.0
 """Clearances are exact up to here [m]; larger ones are reported as this."""

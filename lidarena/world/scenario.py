@@ -7,7 +7,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.refusals import ScenarioError
+from lidarena.base.errors import ScenarioError
 
 
 class Scenario(NamedTuple):

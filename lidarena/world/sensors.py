@@ -6,8 +6,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import merged
-from lidarena.world.lidar import LidarSpec, Scenery, add_range_noise, cast_beams
+from lidarena.base.jit import merged
+from lidarena.world.lidar import LidarSpec, MapGeometry, add_range_noise, cast_beams
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
 
 
@@ -55,7 +55,7 @@ def read_sensors(
     noise: OdometryNoise,
     lidar: LidarSpec,
     bumper: float,
-    scenery: Scenery,
+    geometry: MapGeometry,
     directions: NDArray[np.float64],
     streams: NDArray[np.uint64],
     sensors: Sensors,
@@ -70,13 +70,13 @@ def read_sensors(
         noise: The odometry's.
         lidar: The lidar.
         bumper: Ranges below this are a collision [m].
-        scenery: The floor plans as ``Lidar`` laid them out.
+        geometry: The floor plans as ``Lidar`` laid them out.
         directions: (2, beams) cos and sin of the beams' angles.
         streams: (W, 4) random streams.
         sensors: Output.
     """
     read_odometry(w, w + 1, before, poses, noise, streams, sensors.readings)
-    cast_beams(w, w + 1, poses, plan, 0.0, scenery, directions, lidar.max_range, sensors.ranges)
+    cast_beams(w, w + 1, poses, plan, 0.0, geometry, directions, lidar.max_range, sensors.ranges)
     add_range_noise(w, w + 1, lidar.noise, lidar.max_range, streams, sensors.ranges, sensors.scans)
     dx, dy, dtheta = sensors.readings[w, 0, 0], sensors.readings[w, 0, 1], sensors.readings[w, 0, 2]
     move(sensors.dead_reckoning[w, 0], dx, dy, dtheta)

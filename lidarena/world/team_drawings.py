@@ -1,8 +1,8 @@
 """Floor plans for teams of robots, drawn after the figures of Bennewitz & Burgard, and where robots stand in them.
 
-The paper prints one size (19 m × 15 m) and its pictures are not ours to copy; these drawings keep what it says of them.
-All have their lower-left outer corner at (0, 0). Walls are 0.2 m thick and lie on multiples of 0.2 m, so that a grid of
-the paper's 20 cm cells shows them exactly. The doors of
+The authors print one size (19 m × 15 m) and their pictures are not ours to copy; these drawings keep what their text
+says of them. All have their lower-left outer corner at (0, 0). Walls are 0.2 m thick and lie on multiples of 0.2 m, so
+that a grid of Bennewitz & Burgard's 20 cm cells shows them exactly. The doors of
 ``office`` are open on a grid of 60 cm, too. Two robots of 0.1 m radius or more cannot pass each other in a passage of
 0.8 m on that grid.
 """
@@ -29,8 +29,8 @@ class TeamPlaces(NamedTuple):
     Attributes:
         starts: (n, 2) x, y [m].
         goals: (n, 2) x, y [m]; robot i's goal is row i, unless the places are ``drawn``.
-        drawn: Whether these are predefined positions from which starts and goals are drawn at random, as in the paper's
-            experiments (section 3.3); the two arrays are then equal.
+        drawn: Whether these are predefined positions from which starts and goals are drawn at random, as in Bennewitz &
+            Burgard's experiments (section 3.3); the two arrays are then equal.
     """
 
     starts: NDArray[np.float64]
@@ -39,7 +39,7 @@ class TeamPlaces(NamedTuple):
 
 
 def office() -> Floorplan:
-    """19 m × 15 m: a corridor with five rooms to the north and four to the south (the paper's Fig. 3, 11 left).
+    """19 m × 15 m: a corridor with five rooms to the north and four to the south (the authors' Fig. 3, 11 left).
 
     Every room has a door of 1.0 m to the corridor; two pairs of rooms are also connected, so that some conflicts in
     the corridor can be avoided through them.
@@ -57,7 +57,7 @@ def office() -> Floorplan:
 
 
 def unstructured() -> Floorplan:
-    """14 m × 12 m: obstacles scattered through one hall, with many ways round them (the paper's Fig. 11 right)."""
+    """14 m × 12 m: obstacles scattered through one hall, with many ways round them (the authors' Fig. 11 right)."""
     boxes = [
         (1.8, 1.6, 3.4, 3.0), (5.0, 1.2, 5.8, 3.6), (7.8, 1.8, 9.8, 2.6), (11.4, 1.4, 12.4, 3.4),
         (1.2, 5.0, 2.2, 6.8), (3.8, 5.2, 5.4, 6.0), (6.8, 4.4, 7.6, 6.8), (9.2, 4.6, 11.0, 5.4), (12.4, 5.6, 13.0, 7.0),
@@ -90,8 +90,8 @@ def passing() -> Floorplan:
 def blocked() -> Floorplan:
     """16.2 m × 6.4 m: a hall, and a dead end 0.8 m wide in which one robot stands that others want to pass (Fig. 17).
 
-    In the paper's order, longest way first, robots 0 and 1 are on their way into the dead end before 2 can get out; so
-    it is with the first three robots and with any more.
+    In Bennewitz & Burgard's order, longest way first, robots 0 and 1 are on their way into the dead end before 2 can
+    get out; so it is with the first three robots and with any more.
     """
     width, height = 16.2, 6.4
     rings = [[(6.2, 0.0), (width, 0.0), (width, 2.8), (6.2, 2.8)], [(6.2, 3.6), (width, 3.6), (width, 6.4), (6.2, 6.4)]]

@@ -8,8 +8,8 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.kernels import leaf
 from lidarena.world.physics import Physics, RobotSpec, add_robot, build_space, chord, turn_wheels
 
 _WALL, _ROBOT = 0, 1  # pymunk's collision types

@@ -13,7 +13,7 @@ from gymnasium.vector import AutoresetMode, VectorEnv
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
-from lidarena.world.refusals import ConfigError, suggest
+from lidarena.base.errors import ConfigError, suggest
 
 KEYWORDS = {
     "reward": "completeness",

@@ -16,7 +16,7 @@ from stable_baselines3.common.torch_layers import FlattenExtractor
 from lidarena.agents import load, save_policy
 from lidarena.agents.space_json import from_json, to_json
 from lidarena.agents.vec_env import BatchVecEnv
-from lidarena.world.refusals import PolicyFileError
+from lidarena.base.errors import PolicyFileError
 from tests.agents.fake_batch import RestorableLineBatch
 
 KINDS: list[tuple[str, dict[str, Any], dict[str, Any]]] = [

@@ -17,8 +17,8 @@ import lidarena.agents
 from lidarena.agents import TrainingStopped, load, load_config, train
 from lidarena.agents.training import first_world_seed
 from lidarena.agents.training_config import TrainingConfig
-from lidarena.world.atomic_files import write_folder
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
+from lidarena.base.files import write_folder
 from tests.agents.fake_batch import RestorableLineBatch
 from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
 

@@ -4,8 +4,8 @@ from typing import Any
 import pytest
 
 from lidarena.agents.training_config import Linear, TrainingConfig
-from lidarena.agents.yaml_config import check_config, load_config
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
+from lidarena.base.yaml_config import check_config, load_config
 
 CONFIGS = Path(__file__).parents[2] / "configs" / "train"
 

@@ -12,7 +12,7 @@ from stable_baselines3.common.vec_env import VecNormalize
 from lidarena.agents.training import make_batch
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.agents.vec_env import BatchVecEnv
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
 from tests.agents.fake_batch import ID, LineBatch, NextStepBatch, RestorableLineBatch
 
 

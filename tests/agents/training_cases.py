@@ -10,7 +10,7 @@ import pytest
 import safetensors.torch
 
 from lidarena.agents import TrainingConfig, training
-from lidarena.agents.yaml_config import check_config
+from lidarena.base.yaml_config import check_config
 from tests.agents.fake_batch import ID
 
 SMALL: dict[str, Any] = {

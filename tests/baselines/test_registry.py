@@ -2,10 +2,10 @@ import gymnasium as gym
 import numpy as np
 import pytest
 
+from lidarena.base.errors import ConfigError
 from lidarena.baselines import Policy, make, names, register
 from lidarena.baselines.registry import family_of
-from lidarena.world.refusals import ConfigError
-from tests.baselines.fake_exploration import FakeExploration, drawn
+from tests.baselines.exploration.fake_exploration import FakeExploration, drawn
 
 
 class Plain(gym.Env):

@@ -9,8 +9,8 @@ import gymnasium as gym
 import numpy as np
 from gymnasium import spaces
 
+from lidarena.base.errors import ConfigError, suggest
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import ConfigError, suggest
 
 LENGTH = 4.0
 KEYWORDS = {"slip": 0.02, "stop_at": 0.995, "reward": "completeness", "observation": "da_slam", "truth": True}
@@ -129,7 +129,7 @@ class Dying(Driver):
         import os
 
         self.decisions += 1
-        if self.decisions == 40:  # after the rehearsal
+        if self.decisions == 40:  # after the dry run
             os._exit(9)
         return 1
 

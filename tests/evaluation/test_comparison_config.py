@@ -4,9 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from lidarena.agents.yaml_config import check_config, dump_config, load_config
+from lidarena.base.errors import ConfigError
+from lidarena.base.yaml_config import check_config, dump_config, load_config
 from lidarena.evaluation.comparison_config import ComparisonConfig, file_name
-from lidarena.world.refusals import ConfigError
 
 MINIMAL = {"envs": ["lidarena/Env1-v0"], "policies": ["random"]}
 

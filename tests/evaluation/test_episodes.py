@@ -7,7 +7,7 @@ import pytest
 
 from lidarena import baselines
 from lidarena.evaluation.episodes import policy_seed, run_episode, without_truth
-from lidarena.evaluation.measures import names_for
+from lidarena.evaluation.measures.table_columns import names_for
 from lidarena.evaluation.participants import make_env
 from tests.evaluation.fake_world import Crasher, Driver
 

@@ -9,10 +9,10 @@ import pytest
 from gymnasium import spaces
 
 from lidarena import agents, baselines
-from lidarena.agents.yaml_config import check_config
+from lidarena.base.errors import ConfigError
+from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.evaluation.participants import check, make_env, make_participants
-from lidarena.world.refusals import ConfigError
 from tests.evaluation.fake_world import Corridor, Driver
 
 HERE = "tests.evaluation.fake_world"

@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lidarena.agents.yaml_config import check_config
+from lidarena.base.errors import ConfigError
+from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import ComparisonConfig
-from lidarena.evaluation.measures import BY_NAME
+from lidarena.evaluation.measures.table_columns import BY_NAME
 from lidarena.evaluation.results import (
     RESULTS_FILE,
     best,
@@ -21,7 +22,6 @@ from lidarena.evaluation.results import (
     write_results_folder,
 )
 from lidarena.evaluation.statistics import bootstrap, share_interval
-from lidarena.world.refusals import ConfigError
 from tests.evaluation.rows import row_of
 
 CONFIG = check_config({"envs": ["lidarena/Env1-v0"], "policies": ["random", "frontier"]}, ComparisonConfig)

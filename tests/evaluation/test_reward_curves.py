@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from lidarena.agents.learning_curve import LearningCurve
+from lidarena.base.errors import ConfigError
 from lidarena.evaluation.reward_curves import PANELS, Trainings, band, draw_curves, main, read_curve
-from lidarena.world.refusals import ConfigError
 
 
 def run(folder: Path, slope: float, steps: int = 5) -> Path:

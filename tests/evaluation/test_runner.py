@@ -7,11 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 
-from lidarena.agents.yaml_config import check_config
+from lidarena.base.errors import LidarenaError
+from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode
-from lidarena.evaluation.runner import EpisodeError, Task, available_cores, list_tasks, place_of, rehearse, run_tasks
-from lidarena.world.refusals import Refusal
+from lidarena.evaluation.runner import EpisodeError, Task, available_cores, dry_run, list_tasks, place_of, run_tasks
 
 HERE = "tests.evaluation.fake_world"
 
@@ -102,15 +102,17 @@ def test_a_process_that_dies_becomes_a_sentence() -> None:
 
 
 def test_the_rehearsal_finds_refusals_and_failures() -> None:
-    rehearse(config_of(*TWO))
-    with pytest.raises(Refusal, match="'Corridor', policy 'driver': there is no keyword 'slipp'; did you mean 'slip'"):
-        rehearse(config_of(*TWO, keywords={"slipp": 1}))
+    dry_run(config_of(*TWO))
+    with pytest.raises(
+        LidarenaError, match="'Corridor', policy 'driver': there is no keyword 'slipp'; did you mean 'slip'"
+    ):
+        dry_run(config_of(*TWO, keywords={"slipp": 1}))
     with pytest.raises(EpisodeError, match="policy 'lost', seed 10: ZeroDivisionError"):
-        rehearse(config_of({"name": f"{HERE}:Driver", "options": {"fail_at": 30}, "label": "lost"}))
+        dry_run(config_of({"name": f"{HERE}:Driver", "options": {"fail_at": 30}, "label": "lost"}))
 
 
 def test_the_rehearsal_is_short() -> None:
-    rehearse(config_of({"name": f"{HERE}:Driver", "options": {"fail_at": 31}}))
+    dry_run(config_of({"name": f"{HERE}:Driver", "options": {"fail_at": 31}}))
 
 
 def test_threads_are_given_back(monkeypatch: pytest.MonkeyPatch) -> None:

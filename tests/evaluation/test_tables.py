@@ -10,7 +10,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
-from lidarena.evaluation.measures import BY_NAME, MEASURES
+from lidarena.evaluation.measures.table_columns import BY_NAME, MEASURES
 from lidarena.evaluation.statistics import Interval
 from lidarena.evaluation.tables import csv_text, interval_text, latex_text, markdown_text, terminal_table
 from tests.evaluation.rows import row_of

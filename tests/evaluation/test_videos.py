@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from PIL import Image
 
-from lidarena.evaluation.videos import GIF_FRAMES, GIF_WIDTH, Film
-from lidarena.world.refusals import ConfigError
+from lidarena.base.errors import ConfigError
+from lidarena.evaluation.videos import GIF_FRAMES, GIF_WIDTH, VideoRecorder
 
 
 def scene(width: int = 161, height: int = 81) -> Any:
@@ -20,7 +20,7 @@ def scene(width: int = 161, height: int = 81) -> Any:
 
 
 def test_an_mp4_holds_every_other_step(tmp_path: Path) -> None:
-    with Film(tmp_path / "videos" / "film.mp4") as film:
+    with VideoRecorder(tmp_path / "videos" / "film.mp4") as film:
         for _ in range(24):
             film.add(scene())
     video = cv2.VideoCapture(str(tmp_path / "videos" / "film.mp4"))
@@ -36,7 +36,7 @@ def test_an_mp4_holds_every_other_step(tmp_path: Path) -> None:
 @pytest.mark.parametrize("count", [14, 4 * GIF_FRAMES])
 def test_a_gif_stays_small(tmp_path: Path, count: int) -> None:
     env = scene(2 * GIF_WIDTH, 40)
-    with Film(tmp_path / "film.gif") as film:
+    with VideoRecorder(tmp_path / "film.gif") as film:
         for number in range(count):
             env.render()[:, : 1 + number % GIF_WIDTH, 1] = number % 256  # equal frames would be merged
             film.add(env)
@@ -48,6 +48,6 @@ def test_a_gif_stays_small(tmp_path: Path, count: int) -> None:
 
 def test_an_environment_that_renders_nothing_is_refused(tmp_path: Path) -> None:
     blind = SimpleNamespace(render=lambda: None, metadata={})
-    with pytest.raises(ConfigError, match="renders no pictures"), Film(tmp_path / "film.gif") as film:
+    with pytest.raises(ConfigError, match="renders no pictures"), VideoRecorder(tmp_path / "film.gif") as film:
         film.add(blind)
     assert not (tmp_path / "film.gif").exists()

@@ -4,13 +4,13 @@ from collections.abc import Iterable
 
 import numpy as np
 
-from lidarena.slam.particle_filter import ParticleFilters
-from lidarena.slam.particle_filter_state import FilterParameters
+from lidarena.base.random_streams import seed_stream
+from lidarena.slam.rbpf.particle_filter import ParticleFilters
+from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, add_range_noise
 from lidarena.world.odometry import OdometryNoise, read_odometry
 from lidarena.world.physics import Physics
-from lidarena.world.random_streams import seed_stream
 
 FORWARD, LEFT, RIGHT = (0.5, 0.0), (0.05, 0.3), (0.05, -0.3)
 

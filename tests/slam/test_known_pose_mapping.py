@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 
 from lidarena.slam.known_pose_mapping import KnownPoseMapper, map_scan
 from lidarena.slam.occupancy import empty_maps, trace_scan
-from lidarena.slam.particle_filter_state import FilterParameters
+from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 
 BEAMS, ROWS, COLUMNS, REACH = 24, 60, 80, 3.5
 ANGLES = np.arange(BEAMS) * (2 * math.pi / BEAMS)

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
+from lidarena.base.errors import MapError
 from lidarena.world.arenas import PRINTED, Arena, edge_circles, load_arena
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar
-from lidarena.world.refusals import MapError
 
 SPECS = ["yang", "yang:arc", "yang:u", "gnron", "u_trap:3", "random:3", "random:3?density=0.25"]
 

@@ -3,9 +3,9 @@ import json
 import numpy as np
 import pytest
 
+from lidarena.base.errors import MapError
 from lidarena.world.arenas import load_arena
 from lidarena.world.barn import GOAL, START, barn_indices, load_barn
-from lidarena.world.refusals import MapError
 from tests.world.shared_data import DATA
 
 BARN = DATA / "barn" / "barn_even_150.npz"

@@ -4,8 +4,8 @@ import math
 
 import pytest
 
+from lidarena.base.errors import MapError, suggest
 from lidarena.world.extent import MAX_CELLS, check_extent, check_resolution
-from lidarena.world.refusals import MapError, suggest
 
 
 @pytest.mark.parametrize("resolution", [0.005, 0.05, 2.0])

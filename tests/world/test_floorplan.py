@@ -3,9 +3,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lidarena.base.errors import MapError
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.raster import CLEARANCE_CAP
-from lidarena.world.refusals import MapError
 
 BOX = [(0, 0, 4, 0), (4, 0, 4, 3), (4, 3, 0, 3), (0, 3, 0, 0)]
 

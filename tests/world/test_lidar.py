@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lidarena.base.random_streams import seed_stream
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise
 from lidarena.world.load import load_floorplan
-from lidarena.world.random_streams import seed_stream
 
 PLANS = ["env1", "env2", "env3", "env4", "willow_lobby", "turtlebot3_world", "aws_small_house", "maze:3"]
 

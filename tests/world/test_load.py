@@ -4,12 +4,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lidarena.base.errors import MapError
 from lidarena.world.builtin import MAPS
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan, names
 from lidarena.world.map_server import save_map
 from lidarena.world.maze import generate_maze
-from lidarena.world.refusals import MapError
 
 ROOM = np.zeros((20, 30), dtype=np.int8)
 

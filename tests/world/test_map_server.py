@@ -9,8 +9,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from lidarena.base.errors import MapError
 from lidarena.world.map_server import load_map, save_map
-from lidarena.world.refusals import MapError
 from tests.world.shared_data import DATA, needs_data
 
 PIXELS = np.array([[0, 205, 254], [254, 254, 100]], dtype=np.uint8)

@@ -5,9 +5,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lidarena.base.errors import MapError
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.maze import generate_maze
-from lidarena.world.refusals import MapError
 from tests.world.corridors import count_parts, free_space, share_swept_by_disc
 
 

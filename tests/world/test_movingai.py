@@ -6,8 +6,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 
+from lidarena.base.errors import MapError
 from lidarena.world.movingai import load_movingai, movingai_floorplan
-from lidarena.world.refusals import MapError
 from tests.world.shared_data import DATA, needs_data
 
 HEADER = "type octile\nheight 2\nwidth 4\nmap\n"

@@ -3,8 +3,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lidarena.base.random_streams import normal, seed_stream, uniform
 from lidarena.world.odometry import OdometryNoise, deviations, move, read_odometry, relative_motion, wrap
-from lidarena.world.random_streams import normal, seed_stream, uniform
 
 ANGLE = st.floats(-20, 20)
 PLACE = st.floats(-50, 50)

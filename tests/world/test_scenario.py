@@ -3,8 +3,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from lidarena.base.errors import ScenarioError
 from lidarena.world.movingai import load_movingai
-from lidarena.world.refusals import ScenarioError
 from lidarena.world.scenario import load_scenario
 from tests.world.shared_data import DATA, needs_data
 

@@ -8,10 +8,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lidarena.base.random_streams import seed_stream
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
-from lidarena.world.random_streams import seed_stream
 from lidarena.world.sensors import Sensors, empty_sensors, read_sensors
 
 HALL = Floorplan.from_shapes(
@@ -26,7 +26,7 @@ def measure(
     sensors: Sensors, w: int, before: np.ndarray, after: np.ndarray, streams: np.ndarray, noise: OdometryNoise
 ) -> None:
     plan = np.zeros(WORLDS, np.int64)
-    read_sensors(w, before, after, plan, noise, SPEC, BUMPER, LIDAR.scenery, LIDAR.directions, streams, sensors)
+    read_sensors(w, before, after, plan, noise, SPEC, BUMPER, LIDAR.geometry, LIDAR.directions, streams, sensors)
 
 
 def ways(seed: int, steps: int) -> np.ndarray:

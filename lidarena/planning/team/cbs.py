@@ -14,13 +14,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.constraints import Constraint, forbid, permit, split
+from lidarena.planning.team.grid_graph import STEP
 from lidarena.planning.team.prioritized import conflicts_of
-from lidarena.planning.team.roads import STEP
 from lidarena.planning.team.route import GAVE_UP, find_route
 from lidarena.planning.team.traffic import NO_BOUND, Traffic
-from lidarena.world.kernels import leaf
 
 _LOOKED_AT = 4  # conflicts of a node whose children are compared
 
@@ -90,8 +90,8 @@ class ConflictBasedSearch:
         others = max(len(traffic) - 1, 1)
         # small units must stay below a step, or a path would no longer be the shortest
         self._weight = np.int64(max((int(STEP) - traffic.capacity) // (traffic.capacity * others), 0))
-        self._base = np.zeros(len(traffic.roads), np.int32)
-        self._layer = np.zeros((traffic.capacity, len(traffic.roads)), np.int32)
+        self._base = np.zeros(len(traffic.graph), np.int32)
+        self._layer = np.zeros((traffic.capacity, len(traffic.graph)), np.int32)
 
     def run(self, budget: Budget) -> CbsResult:
         """Search until the optimum is certified or the budget is spent."""
@@ -135,7 +135,7 @@ class ConflictBasedSearch:
 
     def _reroute(self, node: _Node, robot: int, others: range) -> bool:
         """Give a robot the cheapest path that obeys its constraints, past as many of the others as possible."""
-        traffic, roads = self._traffic, self._traffic.roads
+        traffic, graph = self._traffic, self._traffic.graph
         mine = [c for c in node.constraints if c.robot == robot]
         last = max([c.time + 1 for c in mine], default=0)
         if self._weight:
@@ -146,7 +146,7 @@ class ConflictBasedSearch:
             )  # the robot's old path is a bound for the one that is not looked for
             return False
         layer = self._layer[: last + 1]
-        presence = (roads.padded, roads.at, roads.begins, roads.entries)
+        presence = (graph.padded, graph.at, graph.begins, graph.entries)
         tables = (traffic.table, traffic.until, traffic.since)
         for other in others:
             if other != robot and self._weight:
@@ -155,7 +155,7 @@ class ConflictBasedSearch:
             forbid(c.moves, np.int64(c.time), c.forever, *tables)
         traffic.limits[:2] = NO_BOUND
         steps = find_route(
-            roads.neighbours,
+            graph.neighbours,
             traffic.ahead[robot],
             self._base,
             layer,
@@ -202,7 +202,7 @@ class ConflictBasedSearch:
         t, i, j = conflict
         steps = np.array([[node.paths[r, min(s, node.lengths[r])] for s in (t, t + 1)] for r in (i, j)], np.int64)
         resting = 0 if t >= node.lengths[i] else 1 if t >= node.lengths[j] else -1
-        return split(self._traffic.roads, self._traffic.ends, (i, j), t, steps, resting)
+        return split(self._traffic.graph, self._traffic.ends, (i, j), t, steps, resting)
 
     def _child(self, node: _Node, constraint: Constraint) -> _Node | None:
         child = _Node((*node.constraints, constraint), node.paths.copy(), node.lengths.copy(), [])

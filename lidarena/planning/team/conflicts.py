@@ -3,8 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import kernel, leaf
 from lidarena.planning.team.moves import too_close
-from lidarena.world.kernels import kernel, leaf
 
 
 @leaf
@@ -62,7 +62,7 @@ def conflict_times(
 
 
 @leaf
-def find_hinderers(
+def find_blocking_agents(
     robot: int,
     begin: int,
     cells: NDArray[np.int64],
@@ -72,7 +72,7 @@ def find_hinderers(
     lengths: NDArray[np.int64],
     apart: float,
     choices: NDArray[np.int64],
-    hinders: NDArray[np.bool_],
+    blocking: NDArray[np.bool_],
 ) -> None:
     """Mark the robots with which one would conflict if from time ``begin`` on it took a shortest way to its goal.
 
@@ -86,7 +86,7 @@ def find_hinderers(
         lengths: (k,) of the team.
         apart: Sum of two radii [cells].
         choices: (m,) random numbers that choose among equally short ways.
-        hinders: (k,) gets True for the robots.
+        blocking: (k,) gets True for the robots.
     """
     here, t = np.int64(paths[robot, begin]), begin
     final = np.int64(0)
@@ -107,6 +107,6 @@ def find_hinderers(
             rows = float(cells[b, 0] - cells[following, 0]) - row
             cols = float(cells[b, 1] - cells[following, 1]) - col
             if other != robot and too_close(row, col, rows, cols, apart):
-                hinders[other] = True
+                blocking[other] = True
         here = following
         t += 1

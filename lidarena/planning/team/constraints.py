@@ -12,9 +12,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import CLOSE, MOVES, nearest_approach
-from lidarena.planning.team.roads import Roads
-from lidarena.world.kernels import leaf
 
 
 class Constraint(NamedTuple):
@@ -73,12 +73,17 @@ def permit(
 
 
 def split(
-    roads: Roads, ends: NDArray[np.int64], robots: tuple[int, int], time: int, steps: NDArray[np.int64], resting: int
+    graph: GridGraph,
+    ends: NDArray[np.int64],
+    robots: tuple[int, int],
+    time: int,
+    steps: NDArray[np.int64],
+    resting: int,
 ) -> tuple[Constraint, Constraint]:
     """The two constraints that a conflict leads to.
 
     Args:
-        roads: The roads.
+        graph: The graph.
         ends: (k, 2) start and goal places.
         robots: The two that conflict.
         time: The step in which they do.
@@ -89,40 +94,40 @@ def split(
         rests, moves = robots[resting], robots[1 - resting]
         goal = ends[rests, 1]
         return (
-            Constraint(moves, time, _near_goal(roads, int(goal)), True),
+            Constraint(moves, time, _near_goal(graph, int(goal)), True),
             Constraint(rests, time, np.array([[goal, 1]], np.int64), False),
         )
-    one, other = roads.cells[steps].astype(np.float64)  # (begin and end, row and column) each
+    one, other = graph.cells[steps].astype(np.float64)  # (begin and end, row and column) each
     (r0, c0), (r1, c1) = one.tolist()
     (p0, q0), (p1, q1) = other.tolist()
     when = nearest_approach(p0 - r0, q0 - c0, (p1 - p0) - (r1 - r0), (q1 - q0) - (c1 - c0))
     row = (r0 + p0 + when * (r1 - r0 + p1 - p0)) / 2
     col = (c0 + q0 + when * (c1 - c0 + q1 - q0)) / 2
-    moves_there = _through(roads, when, row, col)
+    moves_there = _through(graph, when, row, col)
     return Constraint(robots[0], time, moves_there, False), Constraint(robots[1], time, moves_there, False)
 
 
-def _through(roads: Roads, when: float, row: float, col: float) -> NDArray[np.int64]:
+def _through(graph: GridGraph, when: float, row: float, col: float) -> NDArray[np.int64]:
     """Every move that leads within a radius of a point at a moment of the step."""
-    reach = int(np.ceil(roads.radius)) + 2
-    rows, cols = roads.index.shape
+    reach = int(np.ceil(graph.radius)) + 2
+    rows, cols = graph.index.shape
     found = []
     for r in range(max(int(row) - reach, 0), min(int(row) + reach + 1, rows)):
         for c in range(max(int(col) - reach, 0), min(int(col) + reach + 1, cols)):
-            place = roads.index[r, c]
+            place = graph.index[r, c]
             if place < 0:
                 continue
             away = (r + when * MOVES[:, 0] - row) ** 2 + (c + when * MOVES[:, 1] - col) ** 2
-            close = away < max(roads.radius**2 - CLOSE / 4, CLOSE / 4)
-            bits = int(np.sum((close & (roads.neighbours[place] >= 0)) << np.arange(9)))
+            close = away < max(graph.radius**2 - CLOSE / 4, CLOSE / 4)
+            bits = int(np.sum((close & (graph.neighbours[place] >= 0)) << np.arange(9)))
             if bits:
                 found.append((place, bits))
     return np.array(found, np.int64).reshape(-1, 2)
 
 
-def _near_goal(roads: Roads, goal: int) -> NDArray[np.int64]:
+def _near_goal(graph: GridGraph, goal: int) -> NDArray[np.int64]:
     """Every move that conflicts with a robot which waits at a place."""
-    entries = roads.entries[roads.begins[0] : roads.begins[1]]
-    places = roads.padded[roads.at[goal] + entries[:, 0]]
+    entries = graph.entries[graph.begins[0] : graph.begins[1]]
+    places = graph.padded[graph.at[goal] + entries[:, 0]]
     moves: NDArray[np.int64] = np.stack([places, entries[:, 1]], axis=1)[places >= 0].astype(np.int64)
     return moves

@@ -1,18 +1,19 @@
 """The coordination diagram: robots keep to their independent paths and only choose when to go and when to wait.
 
-O'Donnell & Lozano-Pérez 1989, prioritized as in the paper (section 3.2) and in LaValle, "Planning Algorithms", chapter
-7.2: for each robot in turn, which points of its path it can have reached at which time, past the robots before it.
+O'Donnell & Lozano-Pérez 1989, prioritized as in Bennewitz & Burgard (section 3.2) and in LaValle, "Planning
+Algorithms", chapter 7.2: for each robot in turn, which points of its path it can have reached at which time, past the
+robots before it.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf
 from lidarena.planning.team.prioritized import longest_first, plan_alone
 from lidarena.planning.team.reservations import move_between
 from lidarena.planning.team.route import free_from
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
-from lidarena.world.kernels import leaf
 
 
 @leaf
@@ -80,7 +81,7 @@ def plan_coordination(traffic: Traffic, back_up: bool = False) -> TeamPlan:
     """
     plan_alone(traffic)
     order = longest_first(traffic)
-    roads = traffic.roads
+    graph = traffic.graph
     result = np.zeros(traffic.capacity, np.int32)
     for k, robot in enumerate(order):
         length = traffic.lengths[robot]
@@ -88,7 +89,7 @@ def plan_coordination(traffic: Traffic, back_up: bool = False) -> TeamPlan:
             traffic.paths[robot],
             length,
             back_up,
-            roads.neighbours,
+            graph.neighbours,
             traffic.table,
             traffic.until,
             traffic.since,

@@ -1,8 +1,8 @@
-"""What it costs to be where another robot may stray to: the paper's look-up tables P_t.
+"""What it costs to be where another robot may stray to: Bennewitz & Burgard's look-up tables P_t.
 
 Section 2, C_t^k(x, y) = P(occ_xy) + sum over i < k of P_t^i(x, y): robots stray from their planned paths, and P_t^i is
 the probability that robot i is in a place at time t. The probability falls with the distance from where it is
-planned to be; the paper learns a histogram of distances and approximates it by linear pieces.
+planned to be; Bennewitz & Burgard learn a histogram of distances and approximate it by linear pieces.
 """
 
 import math
@@ -10,10 +10,10 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from lidarena.planning.team.roads import STEP
+from lidarena.base.errors import TeamError
+from lidarena.base.jit import leaf
+from lidarena.planning.team.grid_graph import STEP
 from lidarena.planning.team.traffic import Traffic
-from lidarena.world.kernels import leaf
-from lidarena.world.refusals import TeamError
 
 
 @leaf
@@ -66,14 +66,14 @@ class DeviationCosts:
     def add(self, traffic: Traffic, robot: int) -> None:
         """Charge the robots still to be planned for being near the path of one that is placed."""
         if len(traffic.layer) == 1:
-            traffic.layer = np.zeros((traffic.capacity, len(traffic.roads)), np.int32)
-        roads = traffic.roads
-        stride = np.int64(roads.stride)
+            traffic.layer = np.zeros((traffic.capacity, len(traffic.graph)), np.int32)
+        graph = traffic.graph
+        stride = np.int64(graph.stride)
         _add_along(
             traffic.paths[robot],
             traffic.lengths[robot],
-            roads.padded,
-            roads.at,
+            graph.padded,
+            graph.at,
             self._offsets,
             stride,
             traffic.layer,

@@ -5,8 +5,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lidarena.base.errors import TeamError
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import TeamError
 
 
 @dataclass(frozen=True)

@@ -8,9 +8,9 @@ time: a robot that has to wait a hundred steps for another costs one state, not 
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf
 from lidarena.planning.team.open_list import pop, push
 from lidarena.planning.team.route import at_least, free_from
-from lidarena.world.kernels import leaf
 
 
 @leaf

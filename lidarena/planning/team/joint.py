@@ -3,11 +3,11 @@
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import kernel
 from lidarena.planning.team.moves import MOVES, too_close
 from lidarena.planning.team.open_list import pop, push
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
-from lidarena.world.kernels import kernel
 
 _STATES_A_SECOND = 1_000_000
 _MOST_OPEN = 2**24
@@ -120,18 +120,18 @@ def plan_joint(traffic: Traffic, seconds: float) -> TeamPlan:
         traffic: Two robots, nobody placed.
         seconds: Time limit; the search expands a million states a second.
     """
-    roads = traffic.roads
-    reach = int(np.ceil(roads.apart)) + 2
-    if 3 * len(roads) ** 2 >= 2**31:
+    graph = traffic.graph
+    reach = int(np.ceil(graph.apart)) + 2
+    if 3 * len(graph) ** 2 >= 2**31:
         return failed_plan(
-            traffic, f"Joint A* has no room for {len(roads)} places squared; 'cbs' finds the optimum on large maps."
+            traffic, f"Joint A* has no room for {len(graph)} places squared; 'cbs' finds the optimum on large maps."
         )
     one, other, expanded = _search(
-        roads.neighbours,
-        roads.cells,
+        graph.neighbours,
+        graph.cells,
         traffic.ahead,
         traffic.ends,
-        _conflict_bits(roads.apart, MOVES, np.int64(reach)),
+        _conflict_bits(graph.apart, MOVES, np.int64(reach)),
         np.int64(min(seconds, 1e6) * _STATES_A_SECOND),
         np.int64(_MOST_OPEN),
         traffic.paths,

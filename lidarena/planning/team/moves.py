@@ -11,7 +11,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import inlined
+from lidarena.base.jit import inlined
 
 MOVES = np.array([(0, 0), (0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)], dtype=np.int64)
 """(9, 2) rows and columns: the wait, the four straight moves, the four diagonals."""

@@ -7,17 +7,17 @@ from typing import Any, Literal, get_args
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from lidarena.base.errors import TeamError, suggest
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.certified import plan_certified
 from lidarena.planning.team.coordination import plan_coordination
 from lidarena.planning.team.deviation import DeviationCosts
+from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph, grid_graph_of
 from lidarena.planning.team.joint import plan_joint
 from lidarena.planning.team.prioritized import plan_independent, plan_prioritized
-from lidarena.planning.team.roads import STEP, UNREACHABLE, Roads, roads_of
 from lidarena.planning.team.search import plan_search
 from lidarena.planning.team.team_plan import TeamPlan
 from lidarena.planning.team.traffic import Traffic
-from lidarena.world.refusals import TeamError, suggest
 
 Method = Literal["independent_astar", "prioritized_astar", "coordination", "joint_astar", "prioritized_search", "cbs"]
 MAX_CELL_COST = 64.0
@@ -40,14 +40,15 @@ def plan_team(
     """Plan paths on which a team of disc robots reaches its goals without touching walls or each other.
 
     In a time step a robot waits or moves to a neighbouring cell, in a straight line; a diagonal takes one step too and
-    cuts no corner. The cost is the number of steps until every robot stays at its goal: the paper's score, cells
-    traversed plus steps waited. Robots conflict if at any time of a step their centres are closer than two radii, or
-    meet; one at its goal stays there and blocks.
+    cuts no corner. The cost is the number of steps until every robot stays at its goal: Bennewitz & Burgard's score,
+    cells traversed plus steps waited. Robots conflict if at any time of a step their centres are closer than two radii,
+    or meet; one at its goal stays there and blocks.
 
     ``independent_astar`` ignores the others (solved only if that happens to be free of conflicts).
-    ``prioritized_astar`` is the paper's planner. ``coordination`` keeps to the independent paths. ``joint_astar`` is
-    the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan
-    until it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says that it could not.
+    ``prioritized_astar`` is Bennewitz & Burgard's planner. ``coordination`` keeps to the independent paths.
+    ``joint_astar`` is the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and
+    repairs the plan until it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says
+    that it could not.
 
     Args:
         grid: (rows, cols) bool, True = blocked.
@@ -60,10 +61,10 @@ def plan_team(
         seed: Of the random choices of ``prioritized_search`` and ``cbs``.
         iterations: Greatest number of neighbourhoods that are planned anew, of orders and of nodes; with it and a
             ``time_limit`` of infinity, the same input gives the same plan on every machine.
-        cell_costs: (rows, cols) what being in a cell for a step costs besides the step itself, the paper's P(occ) in
-            steps, 0 to 64; for ``independent_astar``, ``prioritized_astar`` and ``prioritized_search``.
+        cell_costs: (rows, cols) what being in a cell for a step costs besides the step itself, Bennewitz & Burgard's
+            P(occ) in steps, 0 to 64; for ``independent_astar``, ``prioritized_astar`` and ``prioritized_search``.
         deviation: (m, 2) distance in cells and cost in steps of being so near to where a robot with priority is planned
-            to be, the paper's P_t; for ``prioritized_astar``.
+            to be, Bennewitz & Burgard's P_t; for ``prioritized_astar``.
 
     Raises:
         TeamError: The grid, starts or goals are no arrays of this form; a start or goal is outside of the grid, in a
@@ -78,12 +79,12 @@ def plan_team(
     first, final = _checked_cells(starts, goals, blocked)
     if method == "joint_astar" and len(first) != 2:
         raise TeamError(f"method 'joint_astar' plans 2 robots, not {len(first)}; 'cbs' certifies the optimum of more")
-    roads = roads_of(blocked, connectivity, float(radius))
-    ends = np.stack([_places(roads, first, "start"), _places(roads, final, "goal")], axis=1)
-    surcharge = _surcharge(roads, cell_costs, method)
+    graph = grid_graph_of(blocked, connectivity, float(radius))
+    ends = np.stack([_places(graph, first, "start"), _places(graph, final, "goal")], axis=1)
+    surcharge = _surcharge(graph, cell_costs, method)
     strays = _deviation(deviation, method)
-    _check_reachable(roads, ends, blocked)
-    traffic = Traffic(roads, ends, surcharge, timed=strays is not None)
+    _check_reachable(graph, ends, blocked)
+    traffic = Traffic(graph, ends, surcharge, timed=strays is not None)
     plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), strays)
     traffic.close()
     return plan
@@ -183,49 +184,49 @@ def _checked_cells(
     return cells[0], cells[1]
 
 
-def _places(roads: Roads, cells: NDArray[np.int64], kind: str) -> NDArray[np.int64]:
+def _places(graph: GridGraph, cells: NDArray[np.int64], kind: str) -> NDArray[np.int64]:
     """Places of the robots' starts or goals; refused where a disc touches a wall or another disc."""
-    places = roads.index[cells[:, 0], cells[:, 1]].astype(np.int64)
+    places = graph.index[cells[:, 0], cells[:, 1]].astype(np.int64)
     for robot in np.flatnonzero(places < 0):
         row, col = cells[robot]
         raise TeamError(
-            f"the {kind} of robot {robot} at ({row}, {col}) is nearer to a wall than its radius of {roads.radius} cells"
+            f"the {kind} of robot {robot} at ({row}, {col}) is nearer to a wall than its radius of {graph.radius} cells"
         )
     away = np.hypot(*(cells[:, None] - cells[None, :]).transpose(2, 0, 1))
-    near = np.triu((away < roads.apart - 1e-9) | (away == 0), 1)
+    near = np.triu((away < graph.apart - 1e-9) | (away == 0), 1)
     for i, j in np.argwhere(near):
         if away[i, j] == 0:
             raise TeamError(f"robots {i} and {j} share the {kind} ({cells[i, 0]}, {cells[i, 1]})")
         raise TeamError(
             f"the {kind}s of robots {i} and {j} overlap: they are {away[i, j]:.2f} cells apart,"
-            f" their radii need {roads.apart}"
+            f" their radii need {graph.apart}"
         )
     return places
 
 
-def _check_reachable(roads: Roads, ends: NDArray[np.int64], blocked: NDArray[np.bool_]) -> None:
+def _check_reachable(graph: GridGraph, ends: NDArray[np.int64], blocked: NDArray[np.bool_]) -> None:
     for robot, (start, goal) in enumerate(ends):
-        if roads.ahead(int(goal))[start] < UNREACHABLE:
+        if graph.ahead(int(goal))[start] < UNREACHABLE:
             continue
-        here, there = (tuple(int(x) for x in roads.cells[place]) for place in (start, goal))
-        points = roads_of(blocked, roads.connectivity, 0.0)
+        here, there = (tuple(int(x) for x in graph.cells[place]) for place in (start, goal))
+        points = grid_graph_of(blocked, graph.connectivity, 0.0)
         if points.ahead(int(points.index[there]))[points.index[here]] < UNREACHABLE:
             raise TeamError(
-                f"robot {robot} cannot reach its goal {there} from {here}: with a radius of {roads.radius} cells"
+                f"robot {robot} cannot reach its goal {there} from {here}: with a radius of {graph.radius} cells"
                 " it is wider than every door on the way"
             )
         raise TeamError(f"robot {robot} cannot reach its goal {there} from {here}: no free cells connect them")
 
 
-def _surcharge(roads: Roads, cell_costs: ArrayLike | None, method: str) -> NDArray[np.int32] | None:
+def _surcharge(graph: GridGraph, cell_costs: ArrayLike | None, method: str) -> NDArray[np.int32] | None:
     if cell_costs is None:
         return None
     if method not in ("independent_astar", "prioritized_astar", "prioritized_search"):
         raise TeamError(f"method {method!r} counts steps alone and takes no cell_costs")
     costs = np.asarray(cell_costs, np.float64)
-    if costs.shape != roads.index.shape:
-        raise TeamError(f"cell_costs have shape {costs.shape}; the grid has {roads.index.shape}")
-    values = costs[roads.cells[:, 0], roads.cells[:, 1]]
+    if costs.shape != graph.index.shape:
+        raise TeamError(f"cell_costs have shape {costs.shape}; the grid has {graph.index.shape}")
+    values = costs[graph.cells[:, 0], graph.cells[:, 1]]
     if not ((values >= 0) & (values <= MAX_CELL_COST)).all():
         raise TeamError(f"cell_costs must be 0 to {MAX_CELL_COST} steps where robots can stand")
     return np.round(values * int(STEP)).astype(np.int32)

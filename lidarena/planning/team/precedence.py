@@ -13,8 +13,8 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import inlined, leaf
 from lidarena.planning.team.team_plan import TeamPlan
-from lidarena.world.kernels import inlined, leaf
 
 
 @inlined
@@ -110,7 +110,7 @@ class Precedence:
         self._needed = np.full((len(self.lengths), max(longest, 1), len(self.lengths)), -1, np.int64)
         _fill(self.paths, self.lengths, float(apart), self._needed)
 
-    def hinderers(self, robot: int, step: int, completed: NDArray[np.int64]) -> NDArray[np.int64]:
+    def blocking_agents(self, robot: int, step: int, completed: NDArray[np.int64]) -> NDArray[np.int64]:
         """The robots that must go on before ``robot`` may begin a step.
 
         Args:

@@ -1,17 +1,17 @@
-"""The paper's planner: independent paths, then space-time search for whoever conflicts with a robot before it."""
+"""Bennewitz & Burgard's planner: independent paths, then space-time search for who conflicts with a robot before."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.planning.team.conflicts import conflict_times
 from lidarena.planning.team.deviation import DeviationCosts
-from lidarena.planning.team.roads import STEP
+from lidarena.planning.team.grid_graph import STEP
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
 
 
 def longest_first(traffic: Traffic) -> NDArray[np.int64]:
-    """The paper's priorities: the robots by falling cost of the way alone, equal ones by number."""
+    """Bennewitz & Burgard's priorities: the robots by falling cost of the way alone, equal ones by number."""
     return np.argsort(-traffic.alone, kind="stable").astype(np.int64)
 
 
@@ -24,8 +24,8 @@ def plan_alone(traffic: Traffic) -> None:
 
 def conflicts_of(traffic: Traffic) -> NDArray[np.int64]:
     """Each pair's first conflicting step (k, k), -1 where there is none."""
-    roads = traffic.roads
-    return conflict_times(roads.cells, traffic.paths, traffic.lengths, roads.apart)
+    graph = traffic.graph
+    return conflict_times(graph.cells, traffic.paths, traffic.lengths, graph.apart)
 
 
 def plan_independent(traffic: Traffic) -> TeamPlan:
@@ -42,7 +42,7 @@ def plan_independent(traffic: Traffic) -> TeamPlan:
 
 
 def plan_prioritized(traffic: Traffic, deviation: DeviationCosts | None = None) -> TeamPlan:
-    """The paper's method: longest first, a robot is planned anew only if its path conflicts with one before it.
+    """Bennewitz & Burgard's method: longest first, a robot is planned anew only if it conflicts with one before it.
 
     Where robots may stray from their paths, paths conflict already if the risk on the way is worth a step or more.
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.planning.team.budget import Budget
-from lidarena.planning.team.conflicts import find_hinderers
+from lidarena.planning.team.conflicts import find_blocking_agents
 from lidarena.planning.team.traffic import Traffic
 
 _SMALLEST, _LARGEST = 2, 6
@@ -58,7 +58,7 @@ class Repair:
         if rng.random() < _AT_RANDOM:
             others = rng.permutation(team)
         else:
-            near = self._hinderers(first)
+            near = self._blocking_agents(first)
             others = rng.permutation(np.flatnonzero(near))
             if len(others) + 1 < size:
                 others = np.concatenate([others, rng.permutation(np.flatnonzero(~near))])
@@ -66,19 +66,19 @@ class Repair:
         group = np.concatenate([[first], others]).astype(np.int64)
         return rng.permutation(group) if rng.random() < 0.7 else group
 
-    def _hinderers(self, robot: int) -> NDArray[np.bool_]:
+    def _blocking_agents(self, robot: int) -> NDArray[np.bool_]:
         traffic = self._traffic
-        hinders = np.zeros(len(traffic), np.bool_)
-        find_hinderers(
+        blocking = np.zeros(len(traffic), np.bool_)
+        find_blocking_agents(
             np.int64(robot),
             self._rng.integers(traffic.lengths[robot] + 1) if self._rng.random() < 0.5 else np.int64(0),
-            traffic.roads.cells,
-            traffic.roads.neighbours,
+            traffic.graph.cells,
+            traffic.graph.neighbours,
             traffic.ahead[robot],
             traffic.paths,
             traffic.lengths,
-            traffic.roads.apart,
+            traffic.graph.apart,
             self._rng.integers(8, size=16),
-            hinders,
+            blocking,
         )
-        return hinders
+        return blocking

@@ -10,7 +10,7 @@ have cells.
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.kernels import leaf
+from lidarena.base.jit import leaf
 
 NEVER = np.int32(2**30)
 
@@ -39,7 +39,7 @@ def reserve(
 ) -> None:
     """Enter a path (at least ``length`` + 1,) of places; the robot stays at the last from time ``length`` on.
 
-    The other arrays are ``Roads``' and the tables (n, times), (n,) and (n, 9).
+    The other arrays are ``GridGraph``' and the tables (n, times), (n,) and (n, 9).
     """
     for t in range(length):
         m = move_between(neighbours, path[t], path[t + 1])

@@ -1,16 +1,17 @@
 """A* in space and time: the cheapest way of one robot past everything that is reserved, where places cost by time.
 
-The paper's second search (its section 2), in which a state is a place at a time. Three things make it fast: the exact
-distance to the goal as heuristic instead of the straight line; look-ups instead of other robots' paths; and one
-single layer of states for all times after the last other robot has come to rest, since nothing changes any more. With
-that layer the search needs no horizon: a robot for which it finds nothing has no way, whatever the number of steps.
+Bennewitz & Burgard's second search (its section 2), in which a state is a place at a time. Three things make it fast:
+the exact distance to the goal as heuristic instead of the straight line; look-ups instead of other robots' paths; and
+one single layer of states for all times after the last other robot has come to rest, since nothing changes any more.
+With that layer the search needs no horizon: a robot for which it finds nothing has no way, whatever the number of
+steps.
 """
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import inlined, leaf
 from lidarena.planning.team.open_list import pop, push
-from lidarena.world.kernels import inlined, leaf
 
 NO_WAY = -1
 """Every state has been searched."""

@@ -19,7 +19,8 @@ class TeamPlan:
             stays for ever after; (0, 2) for a robot without a path. ``independent_astar`` returns its paths also where
             they conflict.
         cost: Steps of all robots together until they stay at their goals: the cells that they traverse plus the steps
-            that they wait (the paper's score, section 3.2); a diagonal counts as one. inf if a path is missing.
+            that they wait (Bennewitz & Burgard's score, section 3.2); a diagonal counts as one. inf if a path is
+            missing.
         lower_bound: No plan costs less: the sum of the shortest paths, each planned alone, or more if the method
             has proved more.
         optimal: Whether it is certified that no plan costs less.

@@ -5,11 +5,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import leaf, merged
+from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph
 from lidarena.planning.team.interval_route import find_quick_route
 from lidarena.planning.team.reservations import clear, reserve
-from lidarena.planning.team.roads import STEP, UNREACHABLE, Roads
 from lidarena.planning.team.route import find_route
-from lidarena.world.kernels import leaf, merged
 
 NO_BOUND = np.int64(2**31 - 1)
 
@@ -186,10 +186,10 @@ def _plan_group(
 
 
 class Traffic:
-    """A team on its roads: paths, which of them are placed in the reservation tables, and room for searches.
+    """A team on its graph: paths, which of them are placed in the reservation tables, and room for searches.
 
     Args:
-        roads: Where the robots can go.
+        graph: Where the robots can go.
         ends: (k, 2) start and goal places.
         surcharge: (n,) units that being in a place for a step costs more; None = nothing.
         timed: Whether places cost by time, so that waiting is not the same everywhere: search places at times, not
@@ -205,22 +205,22 @@ class Traffic:
     """
 
     def __init__(
-        self, roads: Roads, ends: NDArray[np.int64], surcharge: NDArray[np.int32] | None = None, timed: bool = False
+        self, graph: GridGraph, ends: NDArray[np.int64], surcharge: NDArray[np.int32] | None = None, timed: bool = False
     ) -> None:
-        self.roads, self.ends = roads, ends
-        places, team = len(roads), len(ends)
+        self.graph, self.ends = graph, ends
+        places, team = len(graph), len(ends)
         if surcharge is None:
-            self.ahead = np.array([roads.ahead(int(goal)) for _, goal in ends], np.int32).reshape(team, places)
+            self.ahead = np.array([graph.ahead(int(goal)) for _, goal in ends], np.int32).reshape(team, places)
         else:
-            self.ahead = np.array([roads.ahead_with(int(goal), surcharge) for _, goal in ends]).reshape(team, places)
-        self.alone = np.array([int(roads.ahead(int(goal))[start]) for start, goal in ends], np.int64) // int(STEP)
+            self.ahead = np.array([graph.ahead_with(int(goal), surcharge) for _, goal in ends]).reshape(team, places)
+        self.alone = np.array([int(graph.ahead(int(goal))[start]) for start, goal in ends], np.int64) // int(STEP)
         # no layer of states beyond it is ever searched: everyone in turn, in the worst order, is far more than needed
         reached = self.alone[self.alone < int(UNREACHABLE // STEP)]
         self.capacity = int(2 * reached.max(initial=0) + 4 * team + 64)
         self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
         self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
-        self._workspace = roads.borrow(self.capacity)
+        self._workspace = graph.borrow(self.capacity)
         work = self._workspace
         self.table, self.until, self.since = work.table, work.until, work.since
         self.nodes, self.keys, self.items, self.limits = work.nodes, work.keys, work.items, work.limits
@@ -239,7 +239,7 @@ class Traffic:
         """Empty the tables and give the room for searches back; the paths stay."""
         _clear_some(
             np.flatnonzero(self.placed),
-            self.roads.neighbours,
+            self.graph.neighbours,
             *self._footprints,
             self.table,
             self.until,
@@ -247,13 +247,13 @@ class Traffic:
             self.paths,
             self.lengths,
         )
-        self.roads.give_back(self._workspace)
+        self.graph.give_back(self._workspace)
 
     @property
     def _arrays(self) -> tuple[Any, ...]:
         """The arguments that the kernels of planning share, in their order."""
         return (
-            self.roads.neighbours,
+            self.graph.neighbours,
             *self._footprints,
             self.ahead,
             self.base,
@@ -275,7 +275,7 @@ class Traffic:
 
     @property
     def _footprints(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.int64]]:
-        return self.roads.padded, self.roads.at, self.roads.begins, self.roads.entries
+        return self.graph.padded, self.graph.at, self.graph.begins, self.graph.entries
 
     def plan(self, order: NDArray[np.int64], budget: int = -1) -> int:
         """Plan robots one after the other past those that are placed, and place them.
@@ -301,7 +301,7 @@ class Traffic:
     def remove(self, robots: NDArray[np.int64]) -> None:
         """Take robots' paths out of the tables; the paths themselves stay where they are."""
         arrays = (
-            self.roads.neighbours,
+            self.graph.neighbours,
             *self._footprints,
             self.table,
             self.until,
@@ -317,7 +317,7 @@ class Traffic:
         """Enter robots' paths, as they are, into the tables."""
         for robot in robots:
             r = int(robot)
-            arrays = (self.roads.neighbours, *self._footprints, self.table, self.until, self.since)
+            arrays = (self.graph.neighbours, *self._footprints, self.table, self.until, self.since)
             reserve(self.paths[r], self.lengths[r], *arrays)
         self.placed[robots] = True
 
@@ -332,4 +332,4 @@ class Traffic:
 
     def cells(self) -> list[NDArray[np.int64]]:
         """The paths as cells, (T, 2) each."""
-        return [self.roads.cells[path[: n + 1]] for path, n in zip(self.paths, self.lengths, strict=True)]
+        return [self.graph.cells[path[: n + 1]] for path, n in zip(self.paths, self.lengths, strict=True)]

@@ -7,8 +7,8 @@ start and goal. Then it is solvable: let the robots go one after the other.
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.planning.team.roads import Roads
-from lidarena.world.kernels import leaf
+from lidarena.base.jit import leaf
+from lidarena.planning.team.grid_graph import GridGraph
 
 
 @leaf
@@ -39,23 +39,23 @@ def _reaches(
     return False
 
 
-def is_well_formed(roads: Roads, starts: NDArray[np.int64], goals: NDArray[np.int64]) -> bool:
+def is_well_formed(graph: GridGraph, starts: NDArray[np.int64], goals: NDArray[np.int64]) -> bool:
     """Return whether a problem is well-formed.
 
     Args:
-        roads: Where the robots can go.
+        graph: Where the robots can go.
         starts: (k,) places.
         goals: (k,) places.
     """
-    cells = roads.cells.astype(np.float64)
-    apart = max(roads.apart, 1.0) - 1e-9
+    cells = graph.cells.astype(np.float64)
+    apart = max(graph.apart, 1.0) - 1e-9
     ends = np.stack([starts, goals])  # (2, k)
     near = np.hypot(*(cells[:, None, None] - cells[ends][None]).transpose(3, 0, 1, 2)) < apart  # (n, 2, k)
-    queue, met = np.empty(len(roads), np.int32), np.empty(len(roads), np.bool_)
+    queue, met = np.empty(len(graph), np.int32), np.empty(len(graph), np.bool_)
     ends_near = near.sum(axis=(1, 2))
     for robot in range(len(starts)):
         closed = ends_near > near[:, :, robot].sum(axis=1)  # somebody else's end is near
         blocked = closed[starts[robot]] or closed[goals[robot]]
-        if blocked or not _reaches(roads.neighbours, closed, starts[robot], goals[robot], queue, met):
+        if blocked or not _reaches(graph.neighbours, closed, starts[robot], goals[robot], queue, met):
             return False
     return True

@@ -7,8 +7,8 @@ from typing import NamedTuple
 import numpy as np
 from hypothesis import strategies as st
 
+from lidarena.base.errors import TeamError
 from lidarena.planning import TeamPlan, plan_team
-from lidarena.world.refusals import TeamError
 
 MOVES = [(0, 0), (0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)]
 

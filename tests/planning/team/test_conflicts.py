@@ -2,8 +2,8 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.planning.team.conflicts import conflict_times, find_hinderers, first_conflict
-from lidarena.planning.team.roads import Roads
+from lidarena.planning.team.conflicts import conflict_times, find_blocking_agents, first_conflict
+from lidarena.planning.team.grid_graph import GridGraph
 from tests.planning.team.problems import meet
 from tests.planning.team.walks import Walks, conflicts, walks
 
@@ -17,7 +17,7 @@ def slow_first(team: Walks, one: int, other: int, begin: int = 0) -> int:
 @settings(max_examples=60, deadline=None)
 @given(walks())
 def test_each_pair_has_the_first_step_in_which_it_meets(team: Walks) -> None:
-    times = conflict_times(team.roads.cells, team.paths, team.lengths, team.roads.apart)
+    times = conflict_times(team.graph.cells, team.paths, team.lengths, team.graph.apart)
     assert np.array_equal(times, times.T)
     assert (np.diag(times) == -1).all()
     for i in range(len(team.lengths)):
@@ -29,11 +29,11 @@ def test_each_pair_has_the_first_step_in_which_it_meets(team: Walks) -> None:
 @given(walks(robots=2), st.integers(0, 12))
 def test_what_happened_before_is_not_looked_at(team: Walks, begin: int) -> None:
     (one, other), (a, b) = team.paths, team.lengths.tolist()
-    found = first_conflict(team.roads.cells, one, a, other, b, team.roads.apart, begin)
+    found = first_conflict(team.graph.cells, one, a, other, b, team.graph.apart, begin)
     assert found == slow_first(team, 0, 1, begin)
 
 
-CORRIDOR = Roads(np.zeros((1, 12), bool), 4, 0.0)
+CORRIDOR = GridGraph(np.zeros((1, 12), bool), 4, 0.0)
 
 
 @settings(max_examples=60, deadline=None)
@@ -49,7 +49,7 @@ def test_hinderers_are_those_whom_the_straight_way_meets(seed: int, begin: int) 
     goal = int(rng.integers(12))
     found = np.zeros(4, np.bool_)
     arrays = (CORRIDOR.cells, CORRIDOR.neighbours, CORRIDOR.ahead(goal), paths, lengths, 0.0)
-    find_hinderers(0, begin, *arrays, rng.integers(8, size=16), found)
+    find_blocking_agents(0, begin, *arrays, rng.integers(8, size=16), found)
     here, t, expected = int(paths[0, begin]), begin, {0: False, 1: False, 2: False, 3: False}
     while here != goal or t < lengths.max():
         there = here + int(np.sign(goal - here))

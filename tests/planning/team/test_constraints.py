@@ -8,12 +8,12 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning.team.constraints import Constraint, forbid, permit, split
+from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
 from lidarena.planning.team.moves import MOVES
-from lidarena.planning.team.roads import UNREACHABLE, Roads
 from tests.planning.team.problems import meet
 
 SIDE, TIMES = 8, 12
-ROADS = {radius: Roads(np.zeros((SIDE, SIDE), bool), 8, radius) for radius in (0.0, 0.5, 0.9)}
+ROADS = {radius: GridGraph(np.zeros((SIDE, SIDE), bool), 8, radius) for radius in (0.0, 0.5, 0.9)}
 
 
 def places_and_moves(constraint: Constraint) -> list[tuple[int, int]]:
@@ -21,57 +21,57 @@ def places_and_moves(constraint: Constraint) -> list[tuple[int, int]]:
     return [(int(place), m) for place, bits in constraint.moves for m in range(9) if bits >> m & 1]
 
 
-def together(roads: Roads, one: tuple[int, int], other: tuple[int, int]) -> bool:
+def together(graph: GridGraph, one: tuple[int, int], other: tuple[int, int]) -> bool:
     """Whether two robots that do these (place, move) conflict."""
-    begins = [roads.cells[place] for place, _ in (one, other)]
-    ends = [roads.cells[place] + MOVES[move] for place, move in (one, other)]
-    return meet(*begins, *ends, roads.apart)
+    begins = [graph.cells[place] for place, _ in (one, other)]
+    ends = [graph.cells[place] + MOVES[move] for place, move in (one, other)]
+    return meet(*begins, *ends, graph.apart)
 
 
 @st.composite
-def conflicting(draw: st.DrawFn) -> tuple[Roads, tuple[int, int], tuple[int, int]]:
+def conflicting(draw: st.DrawFn) -> tuple[GridGraph, tuple[int, int], tuple[int, int]]:
     """Two robots in the middle of a hall whose moves conflict."""
-    roads = ROADS[draw(st.sampled_from(sorted(ROADS)))]
+    graph = ROADS[draw(st.sampled_from(sorted(ROADS)))]
     pairs = []
-    one = (roads.place(np.array([4, 4])), draw(st.integers(0, 8)))
+    one = (graph.place(np.array([4, 4])), draw(st.integers(0, 8)))
     for cell in itertools.product(range(2, 7), repeat=2):
         for move in range(9):
-            other = (roads.place(np.array(cell)), move)
-            if cell != (4, 4) and together(roads, one, other):
+            other = (graph.place(np.array(cell)), move)
+            if cell != (4, 4) and together(graph, one, other):
                 pairs.append(other)
-    return roads, one, draw(st.sampled_from(pairs))
+    return graph, one, draw(st.sampled_from(pairs))
 
 
 @settings(max_examples=40, deadline=None)
 @given(conflicting())
 def test_both_moves_are_forbidden_and_any_two_that_are_would_conflict(
-    case: tuple[Roads, tuple[int, int], tuple[int, int]],
+    case: tuple[GridGraph, tuple[int, int], tuple[int, int]],
 ) -> None:
-    roads, one, other = case
-    steps = np.array([[place, roads.neighbours[place, move]] for place, move in (one, other)], np.int64)
-    first, second = split(roads, np.zeros((9, 2), np.int64), (3, 5), 7, steps, -1)
+    graph, one, other = case
+    steps = np.array([[place, graph.neighbours[place, move]] for place, move in (one, other)], np.int64)
+    first, second = split(graph, np.zeros((9, 2), np.int64), (3, 5), 7, steps, -1)
     assert (first.robot, second.robot, first.time, second.time) == (3, 5, 7, 7)
     assert not first.forever and not second.forever
     forbidden = places_and_moves(first), places_and_moves(second)
     assert one in forbidden[0] and other in forbidden[1]
-    assert all(together(roads, a, b) for a, b in itertools.product(*forbidden))
+    assert all(together(graph, a, b) for a, b in itertools.product(*forbidden))
 
 
 @pytest.mark.parametrize("radius", sorted(ROADS))
 @pytest.mark.parametrize("resting", [0, 1])
 def test_one_at_its_goal_is_never_come_close_to_or_arrives_later(radius: float, resting: int) -> None:
-    roads = ROADS[radius]
-    goal = roads.place(np.array([3, 4]))
+    graph = ROADS[radius]
+    goal = graph.place(np.array([3, 4]))
     ends = np.array([[0, 0], [0, 0]], np.int64)
     ends[resting, 1] = goal
-    away, rests = split(roads, ends, (0, 1), 5, np.zeros((2, 2), np.int64), resting)
+    away, rests = split(graph, ends, (0, 1), 5, np.zeros((2, 2), np.int64), resting)
     assert (away.robot, away.time, away.forever) == (1 - resting, 5, True)
     assert (rests.robot, rests.time, rests.forever) == (resting, 5, False)
     assert rests.moves.tolist() == [[goal, 1]]
-    every = itertools.product(range(len(roads)), range(9))
-    close = {pair for pair in every if together(roads, (goal, 0), pair)}
-    inside = {(p, m) for p, m in places_and_moves(away) if roads.neighbours[p, m] >= 0}
-    assert inside == {(p, m) for p, m in close if roads.neighbours[p, m] >= 0}
+    every = itertools.product(range(len(graph)), range(9))
+    close = {pair for pair in every if together(graph, (goal, 0), pair)}
+    inside = {(p, m) for p, m in places_and_moves(away) if graph.neighbours[p, m] >= 0}
+    assert inside == {(p, m) for p, m in close if graph.neighbours[p, m] >= 0}
 
 
 def tables(places: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from lidarena.planning.team.coordination import plan_coordination
 from lidarena.planning.team.prioritized import longest_first, plan_alone
 from tests.planning.team.problems import Problem, meet, parse, problems
-from tests.planning.team.test_tables import traffic_of
+from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
@@ -43,7 +43,7 @@ def test_each_robot_has_the_quickest_timing_past_the_ones_before_it(problem: Pro
     plan = plan_coordination(traffic, back_up)
     done: list[np.ndarray] = []
     for robot in longest_first(alone):
-        expected = slow_timing(ways[robot], done, traffic.roads.apart, traffic.capacity, back_up)
+        expected = slow_timing(ways[robot], done, traffic.graph.apart, traffic.capacity, back_up)
         assert (len(plan.paths[robot]) - 1 if len(plan.paths[robot]) else -1) == expected
         if expected < 0:
             assert not plan.solved and f"Robot {robot} " in plan.message

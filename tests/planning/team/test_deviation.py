@@ -5,7 +5,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning.team.deviation import DeviationCosts
-from lidarena.planning.team.roads import STEP, Roads
+from lidarena.planning.team.grid_graph import STEP, GridGraph
 from lidarena.planning.team.traffic import Traffic
 
 KNOTS = st.lists(st.tuples(st.floats(0.1, 1.5), st.floats(0.0, 9.0)), min_size=1, max_size=4)
@@ -15,8 +15,8 @@ def team(seed: int) -> Traffic:
     """Two robots placed in a hall with a few pillars."""
     rng = np.random.default_rng(seed)
     grid = rng.random((8, 9)) < 0.1
-    roads = Roads(grid, 8, 0.0)
-    traffic = Traffic(roads, rng.permutation(len(roads))[:4].reshape(2, 2).astype(np.int64), timed=True)
+    graph = GridGraph(grid, 8, 0.0)
+    traffic = Traffic(graph, rng.permutation(len(graph))[:4].reshape(2, 2).astype(np.int64), timed=True)
     traffic.plan(np.array([0, 1]))
     return traffic
 
@@ -30,7 +30,7 @@ def test_a_place_costs_what_its_distance_to_the_path_says_at_every_time(
     costs = np.array([first, *(cost for _, cost in more)])
     traffic = team(seed)
     DeviationCosts(np.stack([distances, costs], axis=1)).add(traffic, 0)
-    cells, path = traffic.roads.cells, traffic.paths[0]
+    cells, path = traffic.graph.cells, traffic.paths[0]
     for t in (0, 1, 3, int(traffic.lengths[0]), len(traffic.layer) - 1):
         centre = cells[path[min(t, traffic.lengths[0])]]
         for place, cell in enumerate(cells):

@@ -1,9 +1,9 @@
 import numpy as np
 import pytest
 
+from lidarena.base.errors import TeamError
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.refusals import TeamError
 
 ROOM = Floorplan.from_shapes(
     "room",

@@ -31,10 +31,12 @@ def test_who_passes_later_in_the_plan_waits_for_who_passes_first():
     first, second = np.argsort(meeting)
     nobody = np.zeros(2, np.int64)
     steps = range(int(order.lengths[second]))
-    blocked = [step for step in steps if len(order.hinderers(int(second), step, nobody))]
-    assert blocked and order.hinderers(int(second), blocked[0], nobody).tolist() == [first]
+    blocked = [step for step in steps if len(order.blocking_agents(int(second), step, nobody))]
+    assert blocked and order.blocking_agents(int(second), blocked[0], nobody).tolist() == [first]
     done = order.lengths.copy()
-    assert not any(len(order.hinderers(robot, step, done)) for robot in (0, 1) for step in range(order.lengths[robot]))
+    assert not any(
+        len(order.blocking_agents(robot, step, done)) for robot in (0, 1) for step in range(order.lengths[robot])
+    )
 
 
 @pytest.mark.parametrize("seed", range(8))
@@ -53,7 +55,7 @@ def test_at_random_speeds_nobody_collides_and_everybody_arrives(seed):
         if (completed == order.lengths).all():
             break
         ready = [r for r in range(6) if completed[r] < order.lengths[r]
-                 and not len(order.hinderers(r, int(completed[r]), completed))]  # fmt: skip
+                 and not len(order.blocking_agents(r, int(completed[r]), completed))]  # fmt: skip
         assert ready, "a deadlock"
         completed[rng.choice(ready)] += 1  # one robot alone takes a whole step
         here = np.array([order.paths[r, completed[r]] for r in range(6)])
@@ -95,9 +97,9 @@ def test_before_a_step_the_others_have_done_every_earlier_step_that_comes_near_i
             done = order.lengths.copy()
             for b in np.flatnonzero(near):
                 done[j] = b  # it has not completed step b
-                assert j in order.hinderers(i, a, done)
+                assert j in order.blocking_agents(i, a, done)
             done[j] = a + 1  # what it does later in the plan is none of i's business
-            assert j not in order.hinderers(i, a, done)
+            assert j not in order.blocking_agents(i, a, done)
 
 
 @settings(max_examples=15, deadline=None)
@@ -107,7 +109,9 @@ def test_nobody_waits_in_a_ring(seed: int, radius: float) -> None:
     order = Precedence(planned(seed, radius), 2 * radius)
     done = np.zeros(6, np.int64)
     while (done < order.lengths).any():
-        free = [r for r in range(6) if done[r] < order.lengths[r] and not len(order.hinderers(r, int(done[r]), done))]
+        free = [
+            r for r in range(6) if done[r] < order.lengths[r] and not len(order.blocking_agents(r, int(done[r]), done))
+        ]
         assert free, f"everybody waits for somebody at {done}"
         done[free] += 1
 
@@ -117,7 +121,7 @@ def test_who_is_behind_in_the_plan_never_waits_for_who_is_ahead() -> None:
     for robot in range(6):
         for step in range(order.lengths[robot]):
             ahead = np.full(6, step + 1)
-            assert not len(order.hinderers(robot, step, ahead))
+            assert not len(order.blocking_agents(robot, step, ahead))
 
 
 @pytest.mark.parametrize("seed", range(4))
@@ -131,7 +135,7 @@ def test_at_any_speeds_robots_that_keep_the_order_never_overlap(seed: int) -> No
         if (done >= order.lengths).all():
             break
         for robot in np.flatnonzero(done < order.lengths):
-            if share[robot] > 0.0 or not len(order.hinderers(int(robot), int(done[robot]), done)):
+            if share[robot] > 0.0 or not len(order.blocking_agents(int(robot), int(done[robot]), done)):
                 share[robot] += rng.choice([0.0, 0.05, 0.3])
             if share[robot] >= 1.0:
                 done[robot], share[robot] = done[robot] + 1, 0.0
@@ -147,6 +151,6 @@ def test_at_any_speeds_robots_that_keep_the_order_never_overlap(seed: int) -> No
 def test_who_takes_anothers_room_in_the_same_step_lets_it_go_first() -> None:
     paths = [np.array([(0, col) for col in range(start, start + 4)]) for start in (0, 1)]
     order = Precedence(TeamPlan(True, paths, 6.0, 6.0, True, ""), 0.8)
-    assert order.hinderers(0, 0, np.zeros(2, np.int64)).tolist() == [1]
-    assert not len(order.hinderers(1, 0, np.zeros(2, np.int64)))
-    assert not len(order.hinderers(0, 0, np.array([0, 1])))
+    assert order.blocking_agents(0, 0, np.zeros(2, np.int64)).tolist() == [1]
+    assert not len(order.blocking_agents(1, 0, np.zeros(2, np.int64)))
+    assert not len(order.blocking_agents(0, 0, np.array([0, 1])))

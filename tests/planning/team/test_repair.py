@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.prioritized import conflicts_of
 from lidarena.planning.team.repair import Repair
-from lidarena.planning.team.roads import Roads
 from lidarena.planning.team.traffic import Traffic
 
 
@@ -17,9 +17,9 @@ def crowd(seed: int, robots: int = 7, radius: float = 0.0) -> Traffic:
     rng = np.random.default_rng(seed)
     while True:
         grid = rng.random((6, 6)) < 0.12
-        roads = Roads(grid, 8, radius)
-        ends = np.stack([rng.permutation(len(roads))[:robots] for _ in range(2)], axis=1).astype(np.int64)
-        traffic = Traffic(roads, ends)
+        graph = GridGraph(grid, 8, radius)
+        ends = np.stack([rng.permutation(len(graph))[:robots] for _ in range(2)], axis=1).astype(np.int64)
+        traffic = Traffic(graph, ends)
         if (traffic.alone < 100).all() and traffic.plan(rng.permutation(robots)) == robots:
             return traffic
         traffic.close()
@@ -50,8 +50,8 @@ def test_repair_saves_what_a_bad_order_costs() -> None:
 
 
 def test_nothing_is_tried_where_nothing_can_be_gained() -> None:
-    roads = Roads(np.zeros((4, 9), bool), 8, 0.0)
-    traffic = Traffic(roads, np.array([[0, 8], [27, 35]], np.int64))
+    graph = GridGraph(np.zeros((4, 9), bool), 8, 0.0)
+    traffic = Traffic(graph, np.array([[0, 8], [27, 35]], np.int64))
     assert traffic.plan(np.array([0, 1])) == 2
     assert Repair(traffic, np.random.default_rng(0)).run(Budget(math.inf), 50) == 0
 
@@ -59,8 +59,8 @@ def test_nothing_is_tried_where_nothing_can_be_gained() -> None:
 def test_patience_and_budget_end_a_repair_that_gains_nothing() -> None:
     corridor = np.ones((2, 7), bool)
     corridor[1], corridor[0, 2] = False, False
-    roads = Roads(corridor, 4, 0.0)
-    traffic = Traffic(roads, roads.index[1, [(0, 6), (6, 0)]].astype(np.int64))
+    graph = GridGraph(corridor, 4, 0.0)
+    traffic = Traffic(graph, graph.index[1, [(0, 6), (6, 0)]].astype(np.int64))
     assert traffic.plan(np.array([1, 0])) == 2  # the first one dodges into the niche, which is near to it
     Repair(traffic, np.random.default_rng(1)).run(Budget(math.inf), 30)
     assert traffic.cost() >= traffic.alone.sum() + 2  # aside and back

@@ -6,9 +6,9 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
 from lidarena.planning.team.moves import MOVES
 from lidarena.planning.team.reservations import clear, move_between, reserve
-from lidarena.planning.team.roads import UNREACHABLE, Roads
 from lidarena.planning.team.route import free_from
 from tests.planning.team.problems import meet
 from tests.planning.team.walks import Walks, cell, walks
@@ -17,18 +17,18 @@ TIMES = 16
 
 
 class Tables:
-    """Tables for the roads of some walks."""
+    """Tables for the graph of some walks."""
 
     def __init__(self, team: Walks) -> None:
-        places = len(team.roads)
+        places = len(team.graph)
         self.team = team
         self.table, self.until = np.zeros((places, TIMES), np.uint16), np.zeros(places, np.int32)
         self.since = np.full((places, 9), UNREACHABLE, np.int32)
 
     def arrays(self, robot: int) -> tuple:
-        roads, length = self.team.roads, int(self.team.lengths[robot])
-        footprints = (roads.padded, roads.at, roads.begins, roads.entries)
-        return (self.team.paths[robot], length, roads.neighbours, *footprints, self.table, self.until, self.since)
+        graph, length = self.team.graph, int(self.team.lengths[robot])
+        footprints = (graph.padded, graph.at, graph.begins, graph.entries)
+        return (self.team.paths[robot], length, graph.neighbours, *footprints, self.table, self.until, self.since)
 
     def taken(self, place: int, move: int, t: int) -> bool:
         reserved = t < self.until[place] and self.table[place, t] >> move & 1
@@ -39,9 +39,9 @@ class Tables:
 
 
 def conflicts_with(team: Walks, robots: tuple[int, ...], place: int, move: int, t: int) -> bool:
-    here = team.roads.cells[place]
+    here = team.graph.cells[place]
     there = here + MOVES[move]
-    return any(meet(here, cell(team, r, t), there, cell(team, r, t + 1), team.roads.apart) for r in robots)
+    return any(meet(here, cell(team, r, t), there, cell(team, r, t + 1), team.graph.apart) for r in robots)
 
 
 @settings(max_examples=15, deadline=None)
@@ -50,8 +50,8 @@ def test_a_move_is_taken_exactly_where_it_would_conflict(team: Walks) -> None:
     tables = Tables(team)
     for robot in (0, 1):
         reserve(*tables.arrays(robot))
-    for place, move in itertools.product(range(len(team.roads)), range(9)):
-        if team.roads.neighbours[place, move] >= 0:
+    for place, move in itertools.product(range(len(team.graph)), range(9)):
+        if team.graph.neighbours[place, move] >= 0:
             for t in range(int(team.lengths.max()) + 2):
                 assert tables.taken(place, move, t) == conflicts_with(team, (0, 1), place, move, t), (place, move, t)
 
@@ -74,7 +74,7 @@ def test_clearing_empties_what_reserving_filled(team: Walks) -> None:
 @settings(max_examples=30, deadline=None)
 @given(walks(robots=2), st.data())
 def test_a_goal_is_free_once_nobody_comes_close_any_more(team: Walks, data: st.DataObject) -> None:
-    tables, goal = Tables(team), data.draw(st.integers(0, len(team.roads) - 1))
+    tables, goal = Tables(team), data.draw(st.integers(0, len(team.graph) - 1))
     for robot in (0, 1):
         reserve(*tables.arrays(robot))
     last = int(team.lengths.max()) + 1
@@ -84,8 +84,8 @@ def test_a_goal_is_free_once_nobody_comes_close_any_more(team: Walks, data: st.D
 
 
 def test_a_move_is_told_by_where_it_leads() -> None:
-    roads = Roads(np.zeros((4, 5), bool), 8, 0.0)
-    for here, there in itertools.product(range(len(roads)), repeat=2):
-        step = tuple(roads.cells[there] - roads.cells[here])
+    graph = GridGraph(np.zeros((4, 5), bool), 8, 0.0)
+    for here, there in itertools.product(range(len(graph)), repeat=2):
+        step = tuple(graph.cells[there] - graph.cells[here])
         expected = [tuple(move) for move in MOVES].index(step) if max(map(abs, step)) <= 1 else -1
-        assert move_between(roads.neighbours, here, there) == expected
+        assert move_between(graph.neighbours, here, there) == expected

@@ -4,19 +4,19 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
 from lidarena.planning.team.prioritized import conflicts_of, longest_first, plan_alone, plan_independent
-from lidarena.planning.team.roads import UNREACHABLE, Roads
 from lidarena.planning.team.search import find_order
 from lidarena.planning.team.team_plan import failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
 from tests.planning.team.problems import Problem, problems
-from tests.planning.team.test_tables import traffic_of
+from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
 
 def hall(*ends: tuple[int, int], rows: int = 5, cols: int = 9) -> Traffic:
-    return Traffic(Roads(np.zeros((rows, cols), bool), 8, 0.0), np.array(ends, np.int64))
+    return Traffic(GridGraph(np.zeros((rows, cols), bool), 8, 0.0), np.array(ends, np.int64))
 
 
 def is_empty(traffic: Traffic) -> bool:
@@ -51,7 +51,7 @@ def test_a_closed_team_keeps_its_paths_and_leaves_nothing_behind() -> None:
     assert is_empty(traffic) and traffic.cost() == cost
     for path, old in zip(traffic.cells(), cells, strict=True):
         assert np.array_equal(path, old)
-    after = Traffic(traffic.roads, np.array([[0, 44], [8, 36]], np.int64))
+    after = Traffic(traffic.graph, np.array([[0, 44], [8, 36]], np.int64))
     assert after.table is traffic.table  # the room is lent again
 
 

@@ -1,0 +1,1 @@
+"""Learned agents of the corridor family."""

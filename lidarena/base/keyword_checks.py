@@ -1,0 +1,72 @@
+"""Checks of an environment's keywords at the border: one sentence that names the value and what is allowed."""
+
+import math
+import os
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from lidarena.base.errors import ConfigError, suggest
+
+
+def check_names(what: str, keywords: Mapping[str, Any], allowed: Iterable[str]) -> None:
+    """Refuse a keyword that does not exist.
+
+    Raises:
+        ConfigError: With the nearest right one.
+    """
+    names = list(allowed)
+    for name in keywords:
+        if name not in names:
+            raise ConfigError(f"unknown keyword {name!r} of {what}{suggest(name, names)}")
+
+
+def plain(keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keywords with every path as the string, and every NumPy scalar as the number, that it stands for.
+
+    Also inside of dictionaries.
+    """
+    return {name: _plain(value) for name, value in keywords.items()}
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, os.PathLike):
+        return os.fspath(value)
+    if isinstance(value, Mapping):
+        return plain(value)
+    return value.item() if isinstance(value, np.generic) else value
+
+
+def check_choice(name: str, value: Any, allowed: Sequence[str | None]) -> None:
+    """Refuse a value that is none of ``allowed``.
+
+    Raises:
+        ConfigError: With the nearest right one.
+    """
+    if value not in allowed:
+        words = [word for word in allowed if word is not None]
+        raise ConfigError(f"{name} = {value!r} is not known{suggest(str(value), words)}")
+
+
+def check_range(name: str, value: Any, low: float, high: float, whole: bool = False) -> None:
+    """Refuse what is no finite number from ``low`` to ``high``, or with ``whole`` no whole one.
+
+    Raises:
+        ConfigError: It names the range.
+    """
+    number = isinstance(value, int | float) and not isinstance(value, bool)
+    if not number or not math.isfinite(value) or not low <= value <= high:
+        raise ConfigError(f"{name} = {value!r} is out of range; a number from {low:g} to {high:g} is allowed")
+    if whole and not isinstance(value, int):
+        raise ConfigError(f"{name} = {value!r} must be a whole number")
+
+
+def check_switch(name: str, value: Any) -> None:
+    """Refuse what is neither True nor False.
+
+    Raises:
+        ConfigError: It names the value.
+    """
+    if not isinstance(value, bool):
+        raise ConfigError(f"{name} = {value!r} must be true or false")

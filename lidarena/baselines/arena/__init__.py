@@ -1,0 +1,1 @@
+"""Potential fields and A* as policies of the arena family."""

@@ -1,0 +1,1 @@
+"""Planners of teams as policies of the corridor family."""

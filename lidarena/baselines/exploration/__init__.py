@@ -1,0 +1,1 @@
+"""Frontier exploration and its relatives as policies of the exploration family."""

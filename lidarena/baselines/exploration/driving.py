@@ -1,0 +1,227 @@
+"""Driving an exploration robot to a place on the map that it believes in.
+
+The driver reads the map and the pose from ``info`` and nothing else but the beams. What they have hit nearby of late
+counts as occupied even where the map says otherwise: a thin leg that the map has a hand's breadth beside is where the
+beams see it, not where older scans outvote them. It plans a path with A* on the
+inflated map, lets a :class:`PathFollower` turn it into commands, and looks at the
+newest map before every single command.
+"""
+
+import math
+from collections import deque
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.baselines.exploration.robot_interface import Robot
+from lidarena.planning.grid.frontiers import nearest_cell
+from lidarena.planning.grid.grid_search import find_path
+from lidarena.planning.grid.inflation import Inflation, clearance, inflate, open_start
+from lidarena.planning.grid.path_following import PathFollower, blocked_ahead
+from lidarena.planning.grid.surroundings import Surroundings
+
+_NEARBY = 1.2  # half the side of the window that is looked at before every command (m)
+_NEAR_HITS = 0.6  # hits so near are remembered … (m)
+_REMEMBERED = 2.0  # … for so long (s)
+_ESCAPE = 0.6  # how far around a robot in the lethal zone cells are opened (m)
+
+
+@dataclass(frozen=True)
+class Terrain:
+    """The known part of the map, prepared for planning.
+
+    Attributes:
+        occupancy: (rows, cols) the cropped map.
+        cost: (rows, cols) of entering a cell, inf where blocked.
+        reachable: (rows, cols) bool, cells that A* can reach from the robot.
+        around: Clearances and where the crop lies.
+        cell: [row, column] of the robot.
+    """
+
+    occupancy: NDArray[np.int8]
+    cost: NDArray[np.float64]
+    reachable: NDArray[np.bool_]
+    around: Surroundings
+    cell: tuple[int, int]
+
+
+@dataclass
+class Driver:
+    """Keeps a goal and a path, and returns one action after the other.
+
+    Attributes:
+        robot: The robot.
+        inflation: How far to keep off the walls when planning paths.
+        arrival: Distance to the goal that counts as there (m).
+    """
+
+    robot: Robot
+    inflation: Inflation = field(default_factory=lambda: Inflation(lethal_radius=0.22, radius=0.6))
+    arrival: float = 0.3
+    pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
+    goal: tuple[float, float] | None = None
+
+    def __post_init__(self) -> None:
+        """Start with nothing planned."""
+        self.reset()
+
+    def reset(self) -> None:
+        """Forget the goal and everything planned."""
+        self._follower = PathFollower(self.robot.commands)
+        self.stop()
+        self._info: Mapping[str, Any] = {}
+        self._observation: Any = None
+        self._hits: deque[NDArray[np.float64]] = deque(maxlen=max(1, round(_REMEMBERED / self.robot.period)))
+
+    def stop(self) -> None:
+        """Give up the goal."""
+        self.goal = None
+        self._path = np.empty((0, 2))
+        self._follower.clear()
+
+    def sense(self, observation: Any, info: Mapping[str, Any]) -> None:
+        """Take in the environment's newest observation and info."""
+        self._observation, self._info = observation, info
+        self.pose = np.array(info["pose"], dtype=np.float64)
+        self._hits.append(self.robot.hits(observation, self.pose, _NEAR_HITS))
+        self._around = self._nearby()
+        self._is_clear = self._follower.is_clear(self.pose, self._around)
+
+    def _nearby(self) -> Surroundings:
+        """Clearances in a window around the robot, from the newest map."""
+        occupancy, resolution = self._info["map"], float(self._info["resolution"])
+        x, y = (float(value) for value in self._info["origin"])
+        row, col = int((self.pose[1] - y) / resolution), int((self.pose[0] - x) / resolution)
+        half = math.ceil(_NEARBY / resolution)
+        rows, cols = _overlap(row, half, occupancy.shape[0]), _overlap(col, half, occupancy.shape[1])
+        origin = (x + cols.start * resolution, y + rows.start * resolution)
+        return self._surroundings(self._with_hits(occupancy[rows, cols], origin, resolution), origin)
+
+    def _with_hits(
+        self, occupancy: NDArray[np.int8], origin: tuple[float, float], resolution: float
+    ) -> NDArray[np.int8]:
+        """A copy of a part of the map in which what the beams have hit of late is occupied."""
+        marked = np.array(occupancy, dtype=np.int8, order="C")
+        cells = np.floor((np.concatenate(self._hits) - origin) / resolution).astype(np.int64)
+        inside = ((cells >= 0) & (cells < (marked.shape[1], marked.shape[0]))).all(axis=1)
+        marked[cells[inside, 1], cells[inside, 0]] = 100
+        return marked
+
+    def _surroundings(self, occupancy: NDArray[np.int8], origin: tuple[float, float]) -> Surroundings:
+        resolution = float(self._info["resolution"])
+        gap = clearance(occupancy, resolution, self.inflation.occupied_from, self.inflation.radius + resolution)
+        closed = (occupancy < 0) | (occupancy >= self.inflation.occupied_from)
+        return Surroundings(gap, closed, resolution, origin)
+
+    def survey(self) -> Terrain | None:
+        """Prepare the newest map for planning; None as long as nothing is known."""
+        occupancy, resolution = self._info["map"], float(self._info["resolution"])
+        known = occupancy >= 0
+        rows, cols = _extent(known.any(axis=1)), _extent(known.any(axis=0))
+        if rows is None or cols is None:
+            return None
+        x, y = (float(value) for value in self._info["origin"])
+        origin = (x + cols.start * resolution, y + rows.start * resolution)
+        crop = self._with_hits(occupancy[rows, cols], origin, resolution)
+        around = self._surroundings(crop, origin)
+        cell = around.cell(self.pose[0], self.pose[1])
+        cost = inflate(crop, resolution, self.inflation, around.gap)
+        open_start(cost, crop, around.gap, cell, math.ceil(_ESCAPE / resolution), self.inflation)
+        return Terrain(crop, cost, _reachable(cost, cell), around, cell)
+
+    def go(self, goal: tuple[float, float], terrain: Terrain) -> bool:
+        """Set out for a goal.
+
+        Args:
+            goal: World x, y (m).
+            terrain: The newest :meth:`survey`.
+
+        Returns:
+            Whether there is a path and a first sequence of commands along it; if not, nothing has changed.
+        """
+        same = self.goal is not None and math.dist(goal, self.goal) < terrain.around.resolution
+        path = self._path if same and not self._is_path_blocked() else self._find(goal, terrain)
+        if not len(path):
+            return False
+        if math.dist(goal, self.pose[:2]) <= self.arrival:
+            self._follower.clear()  # it is there; turning lets it look around
+        elif not self._follower.plan(path, self.pose, terrain.around):
+            return False
+        self.goal, self._path = goal, path
+        return True
+
+    def _find(self, goal: tuple[float, float], terrain: Terrain) -> NDArray[np.float64]:
+        return terrain.around.points(find_path(terrain.cost, terrain.cell, terrain.around.cell(*goal)))
+
+    def _is_path_blocked(self) -> bool:
+        margin = self._follower.least_margin
+        return len(self._path) == 0 or blocked_ahead(self._path, self.pose, self._around, margin)
+
+    @property
+    def path(self) -> NDArray[np.float64]:
+        """The path that is followed, (n, 2) x, y (m); (0, 2) if there is none."""
+        return self._path
+
+    @property
+    def arrived(self) -> bool:
+        """Whether the robot is at its goal."""
+        return self.goal is not None and math.dist(self.goal, self.pose[:2]) <= self.arrival
+
+    @property
+    def remaining(self) -> float:
+        """What remains of the path, from its point nearest to the robot on (m)."""
+        if not len(self._path):
+            return 0.0
+        nearest = int(np.argmin(np.hypot(*(self._path - self.pose[:2]).T)))
+        return float(np.hypot(*np.diff(self._path[nearest:], axis=0).T).sum())
+
+    @property
+    def must_plan(self) -> bool:
+        """Whether commands have run out before the goal, or the newest map shows an obstacle on the way."""
+        if self.goal is None or self.arrived:
+            return False
+        if not len(self._follower.planned):
+            return True
+        return not self._is_clear or self._is_path_blocked()
+
+    @property
+    def is_cornered(self) -> bool:
+        """Whether the robot has no room to turn round where it is; nothing can be said of a goal then."""
+        return not self._follower.can_loiter(self.pose, self._around)
+
+    def action(self) -> Any:
+        """Return the next action: the next planned command if map and beams say that it is safe, else a turn."""
+        if self._follower.is_clear(self.pose, self._around):  # commands may be newer than what sense() checked
+            command = self._follower.next()
+            if command is not None and not self.robot.would_touch(command, self._observation):
+                return self.robot.action(command)
+        self._follower.clear()
+        return self.robot.action(self._follower.loiter(self.pose, self._around))
+
+
+def _overlap(centre: int, half: int, size: int) -> slice:
+    """The part of ``centre - half .. centre + half`` inside 0 .. size - 1, at least one cell."""
+    first = min(max(centre - half, 0), size - 1)
+    return slice(first, max(min(centre + half + 1, size), first + 1))
+
+
+def _extent(known: NDArray[np.bool_]) -> slice | None:
+    """The lines that contain anything known, and one more on either side for the frontiers."""
+    lines = np.flatnonzero(known)
+    return slice(max(int(lines[0]) - 1, 0), int(lines[-1]) + 2) if len(lines) else None
+
+
+def _reachable(cost: NDArray[np.float64], cell: tuple[int, int]) -> NDArray[np.bool_]:
+    """The cells connected with ``cell``, or with the passable cell nearest to it."""
+    passable = np.isfinite(cost)
+    row, col = nearest_cell(passable, float(cell[0]), float(cell[1]))
+    if row < 0:
+        return passable
+    # without corner cutting, whatever 8 neighbours connect 4 neighbours connect too
+    _, labels = cv2.connectedComponents(passable.astype(np.uint8), connectivity=4, ltype=cv2.CV_32S)
+    connected: NDArray[np.bool_] = labels == labels[row, col]
+    return connected

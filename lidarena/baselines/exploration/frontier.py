@@ -1,0 +1,210 @@
+"""Frontier exploration: ROS's explore_lite on the SLAM map, driven with the environment's own actions."""
+
+import math
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from lidarena.base.errors import ConfigError
+from lidarena.baselines.exploration.driving import Driver, Terrain
+from lidarena.baselines.exploration.goal_tracker import Goal, GoalBlacklist
+from lidarena.baselines.exploration.robot_interface import Robot
+from lidarena.baselines.registry import register
+from lidarena.planning.grid.frontiers import Frontier, find_frontiers, nearest_cell
+
+_FAR_GOAL = 3.0  # a frontier whose nearest reachable cell is farther away than this is behind something (m)
+_SAME_FRONTIER = 1.0  # a frontier with a cell so near to the goal is the one that was driven to (m)
+_BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a place (m)
+_GROWTH = 0.001  # growth of the known map that justifies a second pass
+
+
+@register("frontier", family="exploration")
+class FrontierPolicy:
+    """Drives to the frontier with the least cost (almost always the largest) until there is none left.
+
+    The search and its cost are explore_lite's (:mod:`lidarena.planning.grid.frontiers`). A goal is planned again once a
+    second, on arrival, and when something new stands in the way; it is given up for good after ``progress_timeout``
+    without progress, if nothing leads there, or if the frontier is still there ``arrival_patience`` after arrival.
+
+    Two things differ from explore_lite, each with an option that takes it back. explore_lite stops when only frontiers
+    below ``min_frontier_size`` are left, and so leaves pockets behind furniture and in corners unseen: here a second
+    pass then fetches those down to ``last_frontier_size``, the nearest first (``last_frontier_size=0.5`` for
+    explore_lite). And explore_lite turns round whenever another frontier has become a cell larger, which costs a robot
+    that needs ten seconds for turning round dear: here another one must be better by ``persistence`` (0 for
+    explore_lite).
+
+    Attributes:
+        finished: Whether no frontier is left; the robot then keeps turning to the left.
+        frontiers: Those of the last planning instant, the best first, in cells of ``terrain``.
+    """
+
+    def __init__(
+        self,
+        env: Any,
+        *,
+        min_frontier_size: float = 0.5,
+        last_frontier_size: float = 0.2,
+        potential_scale: float = 1e-3,
+        gain_scale: float = 1.0,
+        planner_period: float = 1.0,
+        progress_timeout: float = 30.0,
+        arrival_patience: float = 2.0,
+        persistence: float = 0.5,
+        last_pass_timeout: float = 60.0,
+    ) -> None:
+        """Make it for an exploration environment.
+
+        Args:
+            env: The environment.
+            min_frontier_size: Smallest frontier of the first pass (m).
+            last_frontier_size: Smallest frontier of the second pass (m).
+            potential_scale: Weight of the distance in a frontier's cost.
+            gain_scale: Weight of its size.
+            planner_period: Time between two planning instants (s).
+            progress_timeout: A goal is given up after this time without progress (s).
+            arrival_patience: How long to look around at a goal whose frontier does not vanish (s).
+
+            persistence: How much less another frontier must cost (m) for the robot to turn away from the one it is
+                driving to, as long as that one has not vanished; 0 = explore_lite.
+            last_pass_timeout: The second pass ends when this time (s) has not added 0.1% to the map.
+
+        Raises:
+            ConfigError: for an option that is negative or not finite.
+        """
+        options = {
+            "min_frontier_size": min_frontier_size,
+            "last_frontier_size": last_frontier_size,
+            "potential_scale": potential_scale,
+            "gain_scale": gain_scale,
+            "planner_period": planner_period,
+            "progress_timeout": progress_timeout,
+            "arrival_patience": arrival_patience,
+            "persistence": persistence,
+            "last_pass_timeout": last_pass_timeout,
+        }
+        for name, value in options.items():
+            if not 0.0 <= value < math.inf:
+                raise ConfigError(f"{name} = {value}, allowed are finite numbers >= 0")
+        self._sizes = sorted({min_frontier_size, min(last_frontier_size, min_frontier_size)}, reverse=True)
+        self._scales = (potential_scale, gain_scale)
+        self._persistence = persistence
+        robot = Robot(env)
+        self._every = max(1, round(planner_period / robot.period))
+        self._timeout = math.ceil(progress_timeout / robot.period)
+        self._patience = math.ceil(arrival_patience / robot.period)
+        self._last_pass = math.ceil(last_pass_timeout / robot.period)
+        self.driver = Driver(robot)
+        self.reset()
+
+    def reset(self, seed: int | None = None) -> None:
+        """Begin a new episode; nothing here is random."""
+        self.driver.reset()
+        self.finished = False
+        self.frontiers: list[Frontier] = []
+        self._blacklist = GoalBlacklist(self._timeout, self._patience)
+        self._step = self._planned_at = self._wanted_at = 0
+        self._known, self._grown_at = 0, 0
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        """Return the next action.
+
+        Args:
+            observation: The environment's; only its beams are used.
+            info: The environment's; ``map``, ``resolution``, ``origin`` and ``pose`` are used.
+        """
+        self._step += 1
+        self.driver.sense(observation, info)
+        if not self.finished and self._is_due():
+            self._planned_at = self._step
+            self._plan()
+        return self.driver.action()
+
+    def _is_due(self) -> bool:
+        if self._step - self._planned_at >= self._every or self._step == 1:
+            return True
+        return self.driver.must_plan or (self.driver.arrived and self._blacklist.arrived_at is None)
+
+    def _plan(self) -> None:
+        """Choose a goal and set out for it; explore_lite's makePlan."""
+        if self.driver.goal is not None:
+            self._blacklist.watch(self.driver.remaining, self.driver.arrived, self._step)
+        terrain = self.driver.survey()
+        if terrain is not None and self._set_out(terrain):
+            self._wanted_at = self._step
+            return
+        self.driver.stop()
+        # SLAM may be a scan behind, so that nothing left must stay so for a while
+        self.finished = terrain is not None and self._step - self._wanted_at >= self._patience
+
+    def _set_out(self, terrain: Terrain) -> bool:
+        """Set out for the best frontier; whether there is still one that is worth it."""
+        for size in self._sizes:
+            self.frontiers = self._search(terrain, size)
+            if self._is_last(size) and self._is_exhausted(terrain):
+                return False
+            if self._pursue(self.frontiers, terrain):
+                return True
+        return self.driver.is_cornered and bool(self.frontiers)
+
+    def _pursue(self, frontiers: Sequence[Frontier], terrain: Terrain) -> bool:
+        """Set out for the first of some frontiers that can be driven to; whether there is one."""
+        for frontier in frontiers:
+            for goal in self._goals(frontier, terrain):
+                if self._blacklist.is_given_up(goal):
+                    continue
+                if self.driver.go(goal, terrain):
+                    self._blacklist.pursue(goal, self._step)
+                    return True
+                if self.driver.is_cornered:
+                    continue  # nothing can be said of this goal; any other that leads out of here is welcome
+                if not self._blacklist.fail(goal, math.dist(goal, self.driver.pose[:2]) < _BESIDE):
+                    self.driver.stop()
+                    return True  # turn on the spot and try again, rather than drive elsewhere and come back
+        return False
+
+    def _search(self, terrain: Terrain, size: float) -> list[Frontier]:
+        """The frontiers of one pass, the best first."""
+        resolution = terrain.around.resolution
+        found = find_frontiers(
+            terrain.occupancy, terrain.cell, resolution, size, *self._scales, goals=terrain.reachable
+        )
+        kept = self._pursued(found, terrain)
+
+        def cost(frontier: Frontier) -> float:
+            own = frontier.min_distance * resolution if self._is_last(size) else frontier.cost
+            return own - (self._persistence if frontier is kept else 0.0)
+
+        return sorted(found, key=cost)
+
+    def _is_last(self, size: float) -> bool:
+        """Whether the pass for frontiers of a size (m) is the second one."""
+        return size < self._sizes[0]
+
+    def _is_exhausted(self, terrain: Terrain) -> bool:
+        """Whether the map has hardly grown for too long."""
+        known = int(np.count_nonzero(terrain.occupancy >= 0))
+        if known > (1.0 + _GROWTH) * self._known:
+            self._known, self._grown_at = known, self._step
+        return self._step - self._grown_at >= self._last_pass
+
+    def _pursued(self, found: list[Frontier], terrain: Terrain) -> Frontier | None:
+        """The frontier that is being driven to, as far as it can be recognised: the one nearest to the goal."""
+        if self._blacklist.pursued is None or not found:
+            return None
+        cell = terrain.around.cell(*self._blacklist.pursued)
+        apart = [math.sqrt(((frontier.cells - cell) ** 2).sum(axis=1).min()) for frontier in found]
+        nearest = int(np.argmin(apart))
+        return found[nearest] if apart[nearest] * terrain.around.resolution <= _SAME_FRONTIER else None
+
+    @staticmethod
+    def _goals(frontier: Frontier, terrain: Terrain) -> Iterator[Goal]:
+        """Where to go for a frontier: to its middle, or if that is of no use to its cell nearest to the robot."""
+        row, col = frontier.cells[np.argmin(((frontier.cells - np.array(terrain.cell)) ** 2).sum(axis=1))].tolist()
+        for cell, wanted in (
+            (frontier.goal, frontier.centroid),
+            (nearest_cell(terrain.reachable, row, col), (row, col)),
+        ):
+            if math.dist(cell, wanted) * terrain.around.resolution <= _FAR_GOAL:
+                x, y = terrain.around.points(np.array([cell]))[0]
+                yield float(x), float(y)

@@ -1,0 +1,1 @@
+"""Goal reaching among obstacles: the arena family."""

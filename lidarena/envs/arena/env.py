@@ -1,0 +1,194 @@
+"""Goal reaching: a robot at constant speed among obstacles, which it sees with a lidar or knows beforehand."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any, ClassVar
+
+import numpy as np
+from gymnasium.error import ResetNeeded
+from numpy.typing import NDArray
+
+from lidarena.envs.arena.episodes import ArenaEpisodes
+from lidarena.envs.arena.options import ArenaOptions
+from lidarena.envs.arena.rendering import draw_arena
+from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_vector_env import BatchedWorlds, Outcome, whole_number_of_worlds
+from lidarena.envs.infos import Info, of_world
+from lidarena.world.floorplan import Floorplan
+
+
+class ArenaEnv(SingleWorld):
+    """Reach a goal among obstacles at constant speed.
+
+    ## Description
+
+    The world of Yang et al., "A New Method for Robot Path Planning Based Artificial Potential Field": a room of 100 m
+    with circular obstacles, a start and a goal. The robot is a disc that moves at constant speed in a heading that it
+    chooses anew in every decision period; rigid bodies are pymunk's. The BARN worlds and floor plans keep their own
+    size: what is not given as a keyword is to scale, a power of ten.
+
+    ## Action space
+
+    The turn to the left before the next step, by which the robot then drives straight on for one decision period.
+
+    - ``action="continuous"``, ``Box(-1, 1, (1,), float32)``: the turn over π.
+    - ``action="discrete"``, ``Discrete(16)``: number k turns by k · 22.5 degrees.
+
+    ## Observation space
+
+    ``Box(float32, (beams + 3,))``, in the robot's frame:
+
+    | Num | Observation | Min | Max |
+    |-----|-------------|-----|-----|
+    | 0 … beams - 1 | lidar, the first beam straight ahead, counter-clockwise; see below | 0 | 1 |
+    | beams | distance to the goal over 150 m (to scale), at most 1 | 0 | 1 |
+    | beams + 1, + 2 | cosine and sine of the goal's bearing | -1 | 1 |
+
+    ``observation="ranges"`` gives beams over the longest range, ``"proximity"`` the robot's radius over the beam.
+
+    ## Rewards
+
+    The sum of ``info["reward_terms"]``, each weighted by the keyword ``<term>_weight``:
+
+    | Term | Value | Default weight |
+    |------|-------|------|
+    | progress | approach to the goal over the length of a step | 1 |
+    | success | 1 where the goal is reached | 10 |
+    | collision | -1 where something is touched | 10 |
+    | time | -1 | 0.1 |
+    | clearance | from 0 at two steps' length from the nearest surface to -1 at contact | 0 |
+    | turn | -1 for half a turn | 0 |
+
+    ## Starting state
+
+    The arena's own start, or ``start=(x, y)``, heading for the goal. Families (``"random"``, ``"u_trap"``,
+    ``"barn"``) give another arena in every episode, see ``ArenaOptions.pick``.
+
+    ## Episode end
+
+    - Termination: the robot touches something (``collision``), or is within ``goal_radius`` of the goal (``success``).
+    - Truncation: after ``max_episode_steps`` (500) steps.
+
+    ## Info
+
+    ``pose`` (3,), ``goal`` (2,), ``distance`` to it [m], ``scan`` (beams,) ranges [m], ``path_length`` [m],
+    ``clearance`` [m], the least distance between the robot and anything on the last step, ``time`` [s], ``collision``,
+    ``success``, ``robot_radius`` [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the world:
+    ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min, x_max,
+    y_max [m]. With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and
+    ``optimal_time`` (BARN's, [s]; infinite elsewhere), for evaluation.
+
+    Gymnasium's own ``SyncVectorEnv`` and ``AsyncVectorEnv`` stack the infos of their worlds, which cannot be done with
+    ``circles`` where arenas have different numbers of them: take ``make_vec``'s ``vector_entry_point``, or
+    ``knowledge="lidar"``.
+
+    ## Arguments
+
+    See ``ArenaOptions``.
+
+    ## References
+
+    Yang, Yang, Zhang, Chang, Chen, Zhang, A New Method for Robot Path Planning Based Artificial Potential Field, ICIEA
+    2016. Perille, Truong, Xiao, Stone, Benchmarking Metric Ground Navigation, SSRR 2020.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - as gym.Env has it
+    family = "arena"
+
+    def __init__(self, **keywords: Any) -> None:
+        """Make one world; the keywords are those of ``ArenaOptions``.
+
+        Raises:
+            ConfigError: A keyword that is unknown or out of range.
+            MapError: An arena that cannot be used, or whose start or goal is in an obstacle.
+        """
+        options = ArenaOptions.checked(keywords)
+        self._episodes = ArenaEpisodes(1, options)
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(*spaces, options.render_mode)
+
+    def _begin(self, seed: int | None) -> None:
+        self._episodes.reset([0], [self.np_random], [seed])
+
+    def _advance(self, action: Any) -> tuple[float, bool, bool]:
+        rewards, terminated, truncated = self._episodes.step([action])
+        return float(rewards[0]), bool(terminated[0]), bool(truncated[0])
+
+    def _observe(self) -> Any:
+        return self._episodes.observe()[0]
+
+    def _info(self) -> Info:
+        info = of_world(self._episodes.infos(), 0)
+        for part in (info, info.get("truth", {})):
+            if "circles" in part:
+                part["circles"] = part["circles"].copy()
+        return info
+
+    @property
+    def floorplan(self) -> Floorplan:
+        """The arena as it is drawn, for pictures."""
+        scenario = self._episodes.core.scenarios[0]
+        if scenario is None:
+            raise ResetNeeded("there is no arena before reset()")
+        return scenario.plan
+
+    @property
+    def step_length(self) -> float:
+        """What the robot drives in a decision period [m]."""
+        return self._episodes.core.step_length
+
+    def show(self, plan: NDArray[np.float64], before: NDArray[np.float64] | None = None) -> None:
+        """Let a policy's plan be seen in the picture until its next one, in place of the field's own.
+
+        Args:
+            plan: (S, 2) [m].
+            before: (M, 2) the plan before it was smoothed, along which the picture shows forces [m].
+        """
+        if self._episodes.recorder is not None:
+            self._episodes.recorder.show(0, plan, before)
+
+    def _picture(self) -> NDArray[np.uint8] | None:
+        recorder = self._episodes.recorder
+        return None if recorder is None else draw_arena(self._episodes.core, recorder, 0)
+
+
+class BatchedArena(BatchedWorlds):
+    """``num_envs`` arenas in one step; world ``i`` is ``ArenaEnv`` with seed ``seed + i`` to the bit.
+
+    See ``BatchedWorlds``; spaces, rewards and keywords: ``ArenaEnv``.
+
+    Args:
+        num_envs: Number of worlds.
+        keywords: Those of ``ArenaOptions``.
+    """
+
+    metadata: ClassVar[dict[str, Any]] = BatchedWorlds.metadata | {"render_fps": 10}  # type: ignore[misc]
+    family = "arena"
+
+    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+        """Make the worlds; raises like ``ArenaEnv``."""
+        worlds = whole_number_of_worlds(num_envs)
+        options = ArenaOptions.checked(keywords)
+        self._episodes = ArenaEpisodes(worlds, options)
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(worlds, worlds, self._episodes, spaces, options.render_mode)
+
+    @property
+    def step_length(self) -> float:
+        """What a robot drives in a decision period [m]."""
+        return self._episodes.core.step_length
+
+    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
+        self._episodes.reset(worlds, self._generators, seeds)
+
+    def _advance(self, actions: Any) -> Outcome:
+        return self._episodes.step(actions)
+
+    def _observe(self) -> Any:
+        return self._episodes.observe()
+
+    def _infos(self) -> Info:
+        return self._episodes.infos()
+
+    def _picture(self, world: int) -> NDArray[np.uint8] | None:
+        recorder = self._episodes.recorder
+        return None if recorder is None else draw_arena(self._episodes.core, recorder, world)

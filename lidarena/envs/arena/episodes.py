@@ -1,0 +1,153 @@
+"""Episodes in a batch of arenas: rewards, endings, observations, infos; the single environment's too."""
+
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.arena.actions import heading_space, turns_of
+from lidarena.envs.arena.kernels import observe
+from lidarena.envs.arena.options import REWARD_TERMS, ArenaOptions
+from lidarena.envs.arena.rendering import PathRecorder
+from lidarena.envs.arena.state import ArenaCore
+from lidarena.envs.compilation import announced_compilation
+from lidarena.envs.infos import Info
+
+_FAR = 1.5
+"""Distances to the goal are observed over this many sides of the room to which everything is to scale."""
+
+
+class ArenaEpisodes:
+    """Runs episodes in ``worlds`` arenas; whoever owns it decides when a world is reset.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        core: The worlds.
+        single_observation_space: Of one world.
+        single_action_space: Of one world.
+        recorder: Paths for the picture, None unless the worlds are drawn.
+    """
+
+    def __init__(self, worlds: int, options: ArenaOptions) -> None:
+        self.options = options
+        self.core = ArenaCore(worlds, options)
+        self.single_action_space: gym.Space[Any] = heading_space(options.action)
+        low = np.concatenate([np.zeros(options.beams + 1), np.full(2, -1.0)]).astype(np.float32)
+        self.single_observation_space: gym.Space[Any] = gym.spaces.Box(low, np.ones_like(low), dtype=np.float32)
+        self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
+        self._weights = {term: getattr(options, f"{term}_weight") for term in REWARD_TERMS}
+        self._steps = np.zeros(worlds, np.int64)
+        self._success = np.zeros(worlds, np.bool_)
+        self._terms = {term: np.zeros(worlds) for term in REWARD_TERMS}
+        self._compiled = False
+
+    def reset(
+        self,
+        worlds: Iterable[int],
+        generators: Sequence[np.random.Generator],
+        seeds: Sequence[int | None] | None = None,
+    ) -> None:
+        """Begin a new episode in each of ``worlds``.
+
+        Args:
+            worlds: Which ones.
+            generators: Of all worlds; each draws from its own.
+            seeds: That all worlds were reset with, if they were.
+        """
+        with nullcontext() if self._compiled else announced_compilation():
+            for world in worlds:
+                self.core.reset_world(world, generators[world], seeds[world] if seeds is not None else None)
+                self._steps[world] = 0
+                self._success[world] = False
+                for term in self._terms.values():
+                    term[world] = 0.0
+                if self.recorder is not None:
+                    self.recorder.begin(world, self.core)
+
+    def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Act in every world; returns rewards, terminated and truncated, each (worlds,).
+
+        Raises:
+            ActionError: See ``heading_actions.turns_of``.
+        """
+        core = self.core
+        turns = turns_of(self.options.action, actions, core.worlds)
+        before = core.measurements.distance.copy()
+        with nullcontext() if self._compiled else announced_compilation():
+            core.step(turns)
+        self._compiled = True
+        self._steps += 1
+        collision = core.physics.touched
+        self._success = (core.measurements.distance <= core.goal_radius) & ~collision
+        rewards = self._reward(before)
+        if self.recorder is not None:
+            self.recorder.record(core)
+        truncated = np.zeros(core.worlds, np.bool_)
+        if self.options.max_episode_steps is not None:
+            truncated |= self._steps >= self.options.max_episode_steps
+        return rewards, collision | self._success, truncated
+
+    def _reward(self, before: NDArray[np.float64]) -> NDArray[np.float64]:
+        """The weighted sum of the named terms; only additions and products, which no vector unit rounds otherwise."""
+        core = self.core
+        values = {
+            "progress": (before - core.measurements.distance) / core.step_length,
+            "success": self._success.astype(np.float64),
+            "collision": -core.physics.touched.astype(np.float64),
+            "time": np.full(core.worlds, -1.0),
+            "clearance": np.clip(core.measurements.gap / core.approach, 0.0, 1.0) - 1.0,
+            "turn": -np.abs(core.turns - 2.0 * np.pi * np.rint(core.turns / (2.0 * np.pi))) / np.pi,
+        }
+        self._terms = {term: weight * values[term] for term, weight in self._weights.items()}
+        rewards = np.zeros(core.worlds)
+        for term in self._terms.values():
+            rewards += term
+        return rewards
+
+    def observe(self) -> NDArray[np.float32]:
+        """Fresh observations (worlds, beams + 3)."""
+        core = self.core
+        out = np.empty((core.worlds, self.options.beams + 3), np.float32)
+        proximity = self.options.observation == "proximity"
+        far = _FAR * core.side
+        observe(core.physics.poses, core.goals, core.max_range, far, core.radii, proximity, core.measurements, out)
+        return out
+
+    def infos(self) -> Info:
+        """What every step tells, as arrays over worlds."""
+        core = self.core
+        info: Info = {
+            "pose": core.physics.poses[:, 0].copy(),
+            "goal": core.goals.copy(),
+            "distance": core.measurements.distance.copy(),
+            "scan": core.measurements.scans[:, 0].copy(),
+            "path_length": core.measurements.path_length.copy(),
+            "clearance": core.measurements.gap.copy(),
+            "time": self._steps * core.period,
+            "collision": core.physics.touched.copy(),
+            "success": self._success.copy(),
+            "robot_radius": core.radii.copy(),
+            "reward_terms": {name: term.copy() for name, term in self._terms.items()},
+        }
+        known = {"circles": core.circles.copy(), "bounds": core.bounds.copy()}
+        if self.options.knowledge == "map":
+            info |= known
+        if self.options.expose_truth:
+            own = {name: info[name].copy() for name in ("pose", "path_length")}
+            info["truth"] = known | own | {"optimal_time": core.optimal_time.copy()}
+        return info
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, by name, except the generators."""
+        return {"steps": self._steps, "success": self._success} | self.core.arrays()
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of other episodes with the same options."""
+        self._steps[:], self._success = saved["steps"], saved["success"].copy()
+        self.core.load_arrays(saved)

@@ -1,0 +1,166 @@
+"""Keywords of the arena environment, checked at the border."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+import numpy as np
+
+from lidarena.base.errors import ConfigError
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch, plain
+from lidarena.world.arenas import Arena
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.random_arenas import DENSITY
+
+ArenaSpec = str | Arena | Floorplan
+REWARD_TERMS = ("progress", "success", "collision", "time", "clearance", "turn")
+"""Terms of the reward; the keyword ``<term>_weight`` weighs each."""
+_CHOICES = {
+    "pick": ("random", "by_seed"),
+    "action": ("continuous", "discrete"),
+    "observation": ("ranges", "proximity"),
+    "knowledge": ("map", "lidar"),
+    "field": ("robust", "paper", "traditional"),
+    "render_mode": (None, "rgb_array"),
+}
+_RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)} | {f"{term}_weight": (0.0, 1e6) for term in REWARD_TERMS}
+_OPTIONAL_RANGES = {"max_range": (0.01, 1000.0), "decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
+_WHOLE = {"arenas": (1, 10**9), "beams": (4, 3600)}
+
+
+@dataclass(frozen=True)
+class ArenaOptions:
+    """Keywords of ``lidarena/Arena-v0``.
+
+    Attributes:
+        arena: What :func:`lidarena.world.arenas.load_arena` takes (``"yang"``, ``"yang:arc"``, ``"yang:u"``,
+            ``"gnron"``, ``"u_trap:SEED"``, ``"random:SEED"``, ``"barn:INDEX"``, a floor plan); a family without its
+            number, ``"random"``, ``"u_trap"`` or ``"barn"``, of which every episode draws another; or a list of these.
+        density: Share of the room that the circles of ``"random"`` arenas cover, or a list of shares to draw from.
+        path: The BARN file, for ``"barn"`` and ``"barn:INDEX"``.
+        start: x, y instead of the arena's own [m].
+        goal: x, y instead of the arena's own [m]; a floor plan has none and needs it.
+        arenas: How many different ``"random"`` arenas and U traps the episodes draw from. Their numbers begin at 2³¹,
+            beyond those that ``pick="by_seed"`` meets, so that what is trained on is not what is evaluated on.
+        pick: Which arena a reset takes: ``"random"`` draws it, ``"by_seed"`` takes number s of a family or list after
+            ``reset(seed=s)`` (of two or more entries number s // n of entry s mod n), and draws where no seed is given.
+        solvable: Pass over ``"random"`` arenas in which A* finds no path.
+        action: ``"continuous"`` or ``"discrete"`` headings.
+        observation: ``"ranges"`` shows the beams over the longest range, ``"proximity"`` the robot's radius over them,
+            which tells near obstacles apart: 1 is contact.
+        beams: Of the lidar.
+        max_range: Of the lidar [m]; None: 30 m in a 100 m room, and to scale in others.
+        lidar_noise: Standard deviation of a range [m].
+        knowledge: ``"map"`` gives the obstacles in ``info``, ``"lidar"`` only what the lidar sees.
+        speed: Of the robot [m/s].
+        decision_period: Time between decisions [s]; None: 1 s in a 100 m room, and to scale in others.
+        goal_radius: The goal is reached from this distance on [m]; None: 1 m in a 100 m room, and to scale in others.
+        max_episode_steps: Steps after which an episode is truncated; None never.
+        progress_weight: Of the approach to the goal in a step, over the length of a step.
+        success_weight: Of reaching the goal, 1 once.
+        collision_weight: Of touching something, -1 once.
+        time_weight: Of a step, -1 each.
+        clearance_weight: Of coming nearer to something than two steps' length, down to -1 at contact.
+        turn_weight: Of turning, -1 for half a turn.
+        expose_truth: Give ``info["truth"]``, for evaluation.
+        field: Whose potential the picture shows, see :data:`lidarena.planning.potential_field.potential_field.PRESETS`.
+        render_mode: None or ``"rgb_array"``.
+    """
+
+    arena: ArenaSpec | Sequence[ArenaSpec] = "random"
+    density: float | Sequence[float] = DENSITY
+    path: str | None = None
+    start: Sequence[float] | None = None
+    goal: Sequence[float] | None = None
+    arenas: int = 4096
+    pick: str = "random"
+    solvable: bool = False
+    action: str = "continuous"
+    observation: str = "ranges"
+    beams: int = 36
+    max_range: float | None = None
+    lidar_noise: float = 0.0
+    knowledge: str = "map"
+    speed: float = 1.0
+    decision_period: float | None = None
+    goal_radius: float | None = None
+    max_episode_steps: int | None = 500
+    progress_weight: float = 1.0
+    success_weight: float = 10.0
+    collision_weight: float = 10.0
+    time_weight: float = 0.1
+    clearance_weight: float = 0.0
+    turn_weight: float = 0.0
+    expose_truth: bool = False
+    field: str = "robust"
+    render_mode: str | None = None
+
+    @classmethod
+    def checked(cls, keywords: Mapping[str, Any]) -> "ArenaOptions":
+        """Check keywords and fill in the defaults.
+
+        Raises:
+            ConfigError: An unknown keyword, or a value out of range or of the wrong type.
+        """
+        check_names("an arena environment", keywords, [field.name for field in fields(cls)])
+        options = cls(**plain(keywords))
+        for name, allowed in _CHOICES.items():
+            check_choice(name, getattr(options, name), allowed)
+        for name, (low, high) in _RANGES.items():
+            check_range(name, getattr(options, name), low, high)
+        for name, (low, high) in _OPTIONAL_RANGES.items():
+            if getattr(options, name) is not None:
+                check_range(name, getattr(options, name), low, high)
+        for name, (low, high) in _WHOLE.items():
+            check_range(name, getattr(options, name), low, high, whole=True)
+        if options.max_episode_steps is not None:
+            check_range("max_episode_steps", options.max_episode_steps, 1, 10**9, whole=True)
+        check_switch("expose_truth", options.expose_truth)
+        check_switch("solvable", options.solvable)
+        options._check_arenas()
+        return options
+
+    def _check_arenas(self) -> None:
+        specs = self.specs
+        if not specs or not all(isinstance(spec, str | Arena | Floorplan) for spec in specs):
+            raise ConfigError(f"arena = {self.arena!r} must be an arena's name, an arena, or a list of them")
+        if not self.densities:
+            raise ConfigError(f"density = {self.density!r} must be a number or a list of numbers")
+        for share in self.densities:
+            check_range("density", share, 0.0, 0.3)
+        if self.path is not None and not isinstance(self.path, str):
+            raise ConfigError(f"path = {self.path!r} must be the name of the BARN file")
+        for name in ("start", "goal"):
+            _check_point(name, getattr(self, name))
+        self._check_meant()
+
+    def _check_meant(self) -> None:
+        """Refuse what none of the arenas would look at."""
+        texts = [spec for spec in self.specs if isinstance(spec, str)]
+        if self.path is not None and not any(text.partition(":")[0] == "barn" for text in texts):
+            raise ConfigError(f"path = {self.path!r} is for 'barn' arenas only, not for arena = {self.arena!r}")
+        drawn = any(text.partition(":")[0] == "random" and "density=" not in text for text in texts)
+        if self.density != DENSITY and not drawn:
+            raise ConfigError(
+                f"density = {self.density!r} is for 'random' arenas without one of their own only, "
+                f"not for arena = {self.arena!r}"
+            )
+
+    @property
+    def specs(self) -> list[ArenaSpec]:
+        """The arenas and families to draw from."""
+        return [self.arena] if isinstance(self.arena, str) or not isinstance(self.arena, Sequence) else list(self.arena)
+
+    @property
+    def densities(self) -> list[float]:
+        """The densities to draw from."""
+        return list(self.density) if isinstance(self.density, Sequence) else [self.density]
+
+
+def _check_point(name: str, value: Any) -> None:
+    try:
+        fits = value is None or np.asarray(value, np.float64).shape == (2,)
+    except (TypeError, ValueError):
+        fits = False
+    if not fits:
+        raise ConfigError(f"{name} = {value!r} must be two numbers, x, y in metres")

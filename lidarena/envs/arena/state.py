@@ -1,0 +1,199 @@
+"""The arena worlds themselves, batched: physics, lidar, bookkeeping; no spaces, rewards or episodes."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.random_streams import seed_stream
+from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way_gap
+from lidarena.envs.arena.options import ArenaOptions
+from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.lidar import MapGeometry
+from lidarena.world.physics import Physics, RobotSpec
+
+LIDAR_RANGE = 30.0
+"""Longest range in a 100 m room [m]."""
+_MARGIN = 1e-3
+"""Room beside the way below which the solver is asked whether the robot touches [m in a 100 m room]."""
+
+
+class ArenaCore:
+    """``worlds`` arenas with one robot each, stepped together.
+
+    World ``i`` depends on nothing but its own generator and actions.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        physics: Poses and contacts.
+        scenarios: The arena of each world.
+        measurements: What is measured of it.
+        step_length: Driven in a decision period [m].
+        max_range: Of the lidar [m].
+        goal_radius: The goal is reached from this distance on [m].
+        side: Side of the room to which everything is to scale [m].
+        goals: (worlds, 2) [m].
+        drawn: (worlds, 2) entry and number of each world's arena.
+        turns: (worlds,) of the last step [rad].
+
+    Raises:
+        MapError: See ``ScenarioGenerator``.
+        ConfigError: See there.
+    """
+
+    def __init__(self, worlds: int, options: ArenaOptions) -> None:
+        self.worlds, self.options = worlds, options
+        self.generator = ScenarioGenerator(options)
+        scale = self.generator.scale
+        self.side = 100.0 * scale
+        self.period = options.decision_period or scale
+        self.step_length = options.speed * self.period
+        self.max_range = options.max_range or LIDAR_RANGE * scale
+        self.goal_radius = options.goal_radius or scale
+        self.physics = Physics(worlds)
+        angles = np.arange(options.beams) * (2 * np.pi / options.beams)
+        self.directions = np.stack([np.cos(angles), np.sin(angles)])
+        self._allocate()
+
+    def _allocate(self) -> None:
+        worlds, beams = self.worlds, self.options.beams
+        self.scenarios: list[Scenario | None] = [None] * worlds
+        self.circles = np.empty(worlds, object)
+        self.bounds = np.zeros((worlds, 4))
+        self.optimal_time = np.zeros(worlds)
+        self.goals = np.zeros((worlds, 2))
+        self.radii = np.zeros(worlds)
+        self.drawn = np.zeros((worlds, 2), np.int64)
+        self.streams = np.zeros((worlds, 4), np.uint64)
+        self.turns = np.zeros(worlds)
+        self.measurements = Measurements(
+            np.zeros((worlds, 1, beams)),
+            np.zeros((worlds, 1, beams), np.float32),
+            np.zeros(worlds),
+            np.zeros(worlds),
+            np.zeros(worlds),
+        )
+        self._near = np.zeros(worlds, np.bool_)
+        self._plan = np.arange(worlds)
+        self._slots(0, 0)
+
+    def _slots(self, edges: int, circles: int) -> None:
+        """Make room for so many edges and circles in each world: a plan of a single tile each."""
+        worlds = self.worlds
+        self._room = (edges, circles)
+        self.geometry = MapGeometry(
+            edges=np.zeros((worlds * edges, 4)),
+            circles=np.zeros((worlds * circles, 3)),
+            first_tile=2 * np.arange(worlds),  # every other "tile" is what a world leaves free of its room
+            tile_origin=np.zeros((worlds, 2)),
+            tile_shape=np.ones((worlds, 2), np.int64),
+            tile_start=np.repeat(np.arange(worlds) * (edges + circles), 2),
+            items=np.zeros(worlds * (edges + circles), np.int32),
+        )
+        for world, scenario in enumerate(self.scenarios):
+            if scenario is not None:
+                self._furnish(world, scenario)
+
+    def _furnish(self, world: int, scenario: Scenario) -> None:
+        """Write a scenario's edges and circles into a world's room in the geometry."""
+        edges, circles = scenario.plan.edges, scenario.plan.circles
+        if len(edges) > self._room[0] or len(circles) > self._room[1]:
+            self._slots(max(len(edges), self._room[0]), max(2 * len(circles), self._room[1]))
+        most_edges, most_circles = self._room
+        geometry, first = self.geometry, world * (most_edges + most_circles)
+        geometry.edges[world * most_edges :][: len(edges)] = edges
+        geometry.circles[world * most_circles :][: len(circles)] = circles
+        items = geometry.items[first:]
+        items[: len(edges)] = world * most_edges + np.arange(len(edges))
+        circle_items = len(geometry.edges) + world * most_circles + np.arange(len(circles))
+        items[len(edges) : len(edges) + len(circles)] = circle_items
+        geometry.tile_start[2 * world + 1] = first + len(edges) + len(circles)
+
+    def reset_world(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
+        """Begin a new episode in one world.
+
+        Args:
+            world: Which one.
+            rng: Its generator; everything random is drawn from it.
+            seed: That it was reset with, if it was.
+        """
+        self.drawn[world] = self.generator.draw(rng, seed)
+        self.streams[world] = seed_stream(rng)
+        self._take_scenario(world)
+        scenario = self.scenarios[world]
+        assert scenario is not None
+        self._place(world, scenario.plan, scenario.plan.start)
+        self.turns[world] = 0.0
+        self.measurements.path_length[world] = 0.0
+        self._sense(self.physics.poses, world, world + 1)
+        x, y = scenario.arena.start
+        self.measurements.gap[world] = way_gap(x, y, x, y, world, self.geometry) - self.radii[world]
+
+    def _take_scenario(self, world: int) -> None:
+        scenario = self.generator.scenario(*self.drawn[world].tolist())
+        if scenario is self.scenarios[world]:
+            return
+        self.scenarios[world] = scenario
+        self.circles[world] = scenario.arena.circles
+        self.bounds[world], self.goals[world] = scenario.arena.bounds, scenario.arena.goal
+        self.radii[world], self.optimal_time[world] = scenario.arena.robot_radius, scenario.optimal_time
+        self._furnish(world, scenario)
+
+    def _place(self, world: int, plan: Floorplan, pose: tuple[float, float, float]) -> None:
+        # half a radius a step: no body passes through another between two looks of the solver
+        substep = min(0.5 * float(self.radii[world]) / self.options.speed, 0.25 * self.period)
+        spec = RobotSpec(float(self.radii[world]), max_speed=self.options.speed, substep=substep)
+        self.physics.place(world, plan, [pose], spec)
+
+    def _meet(self, world: int) -> None:
+        """Tell the solver of what a robot can reach in a step, and of nothing else: that is soon told."""
+        scenario = self.scenarios[world]
+        assert scenario is not None
+        x, y, theta = self.physics.poses[world, 0].tolist()
+        self._place(
+            world, vicinity(scenario.plan, x, y, 1.1 * self.step_length + 1.1 * float(self.radii[world])), (x, y, theta)
+        )
+
+    def step(self, turns: NDArray[np.float64]) -> None:
+        """Turn every robot by ``turns`` (worlds,) to the left [rad] and drive for one decision period."""
+        poses, margin = self.physics.poses, _MARGIN * self.generator.scale
+        before = poses.copy()
+        self.turns = turns
+        turn_and_sweep(
+            turns, self.step_length, margin, self.geometry, self.radii, poses, self.measurements.gap, self._near
+        )
+        for world in np.flatnonzero(self._near).tolist():
+            self._meet(world)
+        commands = np.zeros((self.worlds, 1, 2))
+        commands[:, 0, 0] = self.options.speed
+        self.physics.advance(commands, self.period, self._near)
+        self.measurements.gap[self.physics.touched] = 0.0
+        self._sense(before, 0, self.worlds)
+
+    def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
+        sense(
+            first, last, before, self.physics.poses, self._plan, self.goals, self.max_range, self.options.lidar_noise,
+            self.geometry, self.directions, self.streams, self.measurements,
+        )  # fmt: skip
+
+    @property
+    def approach(self) -> float:
+        """Clearance below which the reward's term of that name counts [m]."""
+        return 2.0 * self.step_length
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
+        own = {"poses": self.physics.poses, "drawn": self.drawn, "streams": self.streams, "turns": self.turns}
+        return own | {"touched": self.physics.touched} | self.measurements._asdict()
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of another core with the same options."""
+        self.drawn[:] = saved["drawn"]
+        for world in range(self.worlds):
+            self._take_scenario(world)
+        for name, array in self.arrays().items():
+            array[...] = saved[name]

@@ -1,0 +1,1 @@
+"""Teams of robots on a floor plan: the corridor family."""

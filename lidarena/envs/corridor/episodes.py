@@ -1,0 +1,220 @@
+"""Episodes in a batch of multi-robot worlds: rewards, endings, observations, infos; for every interface to them."""
+
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.compilation import announced_compilation
+from lidarena.envs.corridor.actions import TOP_SPEED, TOP_TURN_RATE, action_space, commands_of
+from lidarena.envs.corridor.kernels import write_observations
+from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.envs.corridor.rendering import TeamSketch, TrailRecorder
+from lidarena.envs.corridor.state import CorridorCore
+from lidarena.envs.infos import Info
+
+TERMS = ("progress", "arrival", "collision", "time", "closeness", "turning")
+_EXTRA = 8
+"""Numbers of an observation besides the beams."""
+NEIGHBOUR = 5
+"""Numbers of an observation for each neighbour."""
+
+
+class CorridorEpisodes:
+    """Runs episodes in ``worlds`` worlds; whoever owns it decides when a world is reset.
+
+    The reward of a robot is the sum of these terms, each times its weight, as long as it is on its way:
+    ``progress`` by how many metres the way to its goal became shorter, ``arrival`` 1 on arrival, ``collision`` -1 when
+    it touches something, ``time`` minus the seconds, ``closeness`` minus the seconds times max(0, 1 - gap / 2 radii)
+    for the gap to the nearest thing that a beam meets, ``turning`` minus the radians turned.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        core: The worlds.
+        observation_space: Of one robot.
+        action_space: Of one robot.
+        finished: (worlds, robots) whether a robot has arrived, or collided where that ends it.
+        arrived: (worlds, robots).
+        touches: (worlds, robots) decision periods in which a robot on its way touched something.
+        steps: (worlds,) decisions so far.
+        trails: For the picture, None unless the worlds are drawn.
+        sketches: What a planner wants to be seen in each world's picture.
+    """
+
+    def __init__(self, worlds: int, options: CorridorOptions) -> None:
+        self.options, self.core = options, CorridorCore(worlds, options)
+        self._numbers = options.beams + _EXTRA + NEIGHBOUR * options.neighbours
+        self.observation_space = gym.spaces.Box(-1.0, 1.0, (self._numbers,), np.float32)
+        self.action_space: gym.Space[Any] = action_space(options.action)
+        self.trails = TrailRecorder(worlds) if options.render_mode is not None else None
+        self.sketches = [TeamSketch() for _ in range(worlds)]
+        shape = (worlds, options.robots)
+        self.finished, self.arrived = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
+        self.touches, self.steps = np.zeros(shape, np.int64), np.zeros(worlds, np.int64)
+        self._arrival_time = np.full(shape, np.nan)
+        self._terms = {name: np.zeros(shape) for name in TERMS}
+        self._weights = {name: float(getattr(options, f"{name}_weight")) for name in TERMS}
+        grid = self.core.places.grid
+        self._map = np.where(grid.blocked, 100, 0).astype(np.int8)
+        self._map.flags.writeable = False
+        self._compiled = False
+
+    def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
+        """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
+        with nullcontext() if self._compiled else announced_compilation():
+            for world in worlds:
+                self.core.reset_world(world, generators[world])
+                self.finished[world] = self.arrived[world] = False
+                self.touches[world] = self.steps[world] = 0
+                self._arrival_time[world] = np.nan
+                self.sketches[world] = TeamSketch()
+                for term in self._terms.values():
+                    term[world] = 0.0
+                if self.trails is not None:
+                    self.trails.begin(world, self.core.physics.poses[world])
+
+    def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Act in every world; actions (worlds, robots, …), those of finished robots are not looked at.
+
+        Returns:
+            Rewards, terminated and truncated, each (worlds, robots); robots that were finished before have zeros.
+
+        Raises:
+            ActionError: See ``team_actions.commands_of``.
+        """
+        shape = self.finished.shape
+        array = np.asarray(actions)
+        flat = array.reshape(shape[0] * shape[1], *array.shape[2:]) if array.shape[:2] == shape else actions
+        commands = commands_of(self.options.action, flat, shape[0] * shape[1]).reshape(*shape, 2)
+        commands[self.finished] = 0.0
+        before = self.core.measurements.remaining.copy()
+        with nullcontext() if self._compiled else announced_compilation():
+            self.core.step(commands)
+        self._compiled = True
+        self.steps += 1
+        active = ~self.finished
+        touching = active & (self.core.physics.touched_wall | self.core.physics.touched_robot)
+        away = self.core.physics.poses[..., :2] - self.core.goals
+        near = np.sqrt((away**2).sum(axis=-1)) <= self.options.goal_tolerance
+        arriving = active & near & ~(touching & self.options.collision_ends)
+        rewards = self._reward(active, touching, arriving, before)
+        self._note(touching, arriving)
+        terminated = active & self.finished
+        truncated = active & ~self.finished & self._out_of_time[:, None]
+        return rewards, terminated, truncated
+
+    def _note(self, touching: NDArray[np.bool_], arriving: NDArray[np.bool_]) -> None:
+        self.touches += touching
+        self.arrived |= arriving
+        self.finished |= arriving
+        if self.options.collision_ends:
+            self.finished |= touching
+        self._arrival_time[arriving] = np.repeat(self.time, arriving.sum(axis=1))
+        if self.trails is not None:
+            self.trails.record(self.core.physics.poses)
+
+    def _reward(
+        self,
+        active: NDArray[np.bool_],
+        touching: NDArray[np.bool_],
+        arriving: NDArray[np.bool_],
+        before: NDArray[np.float64],
+    ) -> NDArray[np.float64]:
+        measurements, period = self.core.measurements, self.options.decision_period
+        raw: dict[str, NDArray[Any]] = {
+            "progress": before - measurements.remaining,
+            "arrival": arriving,
+            "collision": -1.0 * touching,
+            "time": -period * active,
+            "closeness": -period * measurements.closeness,
+            "turning": -period * np.abs(measurements.velocity[..., 1]),
+        }
+        self._terms = {name: self._weights[name] * (values * active) for name, values in raw.items()}
+        total = np.zeros(active.shape)
+        for values in self._terms.values():
+            total += values
+        return total
+
+    @property
+    def _out_of_time(self) -> NDArray[np.bool_]:
+        most = self.options.max_episode_steps
+        return np.zeros(len(self.steps), np.bool_) if most is None else self.steps >= most
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """(worlds,) since the episodes began [s]."""
+        return self.steps.astype(np.float64) * self.options.decision_period
+
+    @property
+    def over(self) -> NDArray[np.bool_]:
+        """(worlds,) whether nobody is on the way any more, or time is up."""
+        return self.finished.all(axis=1) | self._out_of_time
+
+    def observe(self, hide_finished: bool = True) -> NDArray[np.float32]:
+        """Fresh observations (worlds, robots, …); of robots that are finished zeros, if wanted."""
+        out = np.empty((*self.finished.shape, self._numbers), np.float32)
+        hidden = self.finished if hide_finished else np.zeros_like(self.finished)
+        top = np.array([TOP_SPEED, TOP_TURN_RATE])
+        reach, neighbours = self.core.beam.max_range, self.options.neighbours
+        write_observations(self.core.measurements, self.core.goals, hidden, reach, top, neighbours, out)
+        return out
+
+    def robot_infos(self) -> Info:
+        """What every step tells each robot, as arrays over (worlds, robots)."""
+        core = self.core
+        return {
+            "pose": core.measurements.measured.copy(),
+            "goal": core.goals.copy(),
+            "remaining": core.measurements.remaining.copy(),
+            "arrived": self.arrived.copy(),
+            "collision": self.touches > 0,
+            "path_length": core.travelled.copy(),
+            "reward_terms": {name: term.copy() for name, term in self._terms.items()},
+        }
+
+    def world_infos(self) -> Info:
+        """What every step tells about a world, as arrays over worlds; ``map`` is one read-only array for all."""
+        worlds, grid = len(self.steps), self.core.places.grid
+        info: Info = {
+            "time": self.time,
+            "map": np.broadcast_to(self._map, (worlds, *self._map.shape)),
+            "resolution": np.full(worlds, grid.resolution),
+            "origin": np.tile(np.array(grid.origin), (worlds, 1)),
+            "radius": np.full(worlds, self.options.radius),
+        }
+        if self.options.expose_truth:
+            lengths = self.core.travelled.sum(axis=1)
+            info["truth"] = {"poses": self.core.physics.poses.copy(), "path_length": lengths}
+        return info
+
+    def measures(self) -> dict[str, NDArray[np.float64]]:
+        """How the teams have done so far, by name, (worlds,) each; times of robots not there yet go on."""
+        times = np.where(np.isnan(self._arrival_time), self.time[:, None], self._arrival_time)
+        return {
+            "arrival": self.arrived.mean(axis=1),
+            "all_arrived": self.arrived.all(axis=1).astype(np.float64),
+            "collided": (self.touches > 0).mean(axis=1),
+            "makespan": times.max(axis=1),
+            "mean_time": times.mean(axis=1),
+        }
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, by name, except the generators."""
+        own = {"steps": self.steps, "finished": self.finished, "arrived": self.arrived, "touches": self.touches}
+        return own | {"arrival_time": self._arrival_time} | self.core.arrays()
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of other episodes with the same options."""
+        for name in ("steps", "finished", "arrived", "touches"):
+            getattr(self, name)[...] = saved[name]
+        self._arrival_time[...] = saved["arrival_time"]
+        self.core.load_arrays(saved)
+        if self.trails is not None:  # what was driven before is not saved
+            for world, poses in enumerate(self.core.physics.poses):
+                self.trails.begin(world, poses)

@@ -1,0 +1,131 @@
+"""Keywords of the multi-robot environments, checked at the border."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch, plain
+from lidarena.world.floorplan import Floorplan
+
+MapSpec = str | Floorplan
+Points = Sequence[Sequence[float]]
+
+MOST_ROBOTS = 64
+_RANGES = {
+    "radius": (0.02, 1.0),
+    "lidar_range": (0.5, 30.0),
+    "lidar_noise": (0.0, 1.0),
+    "motion_noise": (0.0, 10.0),
+    "localization_noise": (0.0, 1.0),
+    "stall_rate": (0.0, 1.0),
+    "decision_period": (0.02, 1.0),
+    "goal_tolerance": (0.02, 1.0),
+    "progress_weight": (0.0, 1e6),
+    "arrival_weight": (0.0, 1e6),
+    "collision_weight": (0.0, 1e6),
+    "time_weight": (0.0, 1e6),
+    "closeness_weight": (0.0, 1e6),
+    "turning_weight": (0.0, 1e6),
+}
+_WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440), "neighbours": (0, MOST_ROBOTS)}
+_CHOICES = {"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")}
+
+
+@dataclass(frozen=True)
+class CorridorOptions:
+    """Keywords of ``corridor_v0.parallel_env``, ``corridor_v0.env`` and ``lidarena/CorridorCentral-v0``.
+
+    Attributes:
+        map: Floor plan: ``office``, ``unstructured``, ``passing``, ``blocked``, or any other (see ``load_floorplan``).
+        robots: Size of the team.
+        places: Where robots start and go: ``"predefined"`` (the map's own places; where there is a set of them, both
+            are drawn from it), ``"random"`` (any places, such that the problem is solvable), the path of a MovingAI
+            ``.scen`` file that belongs to a ``.map``, or None: predefined if the map has places, else random.
+        starts: (robots, 2) x, y [m] in place of ``places``; with ``goals``.
+        goals: (robots, 2) x, y [m].
+        action: ``"continuous"`` or ``"discrete"``.
+        radius: Of every robot [m].
+        beams: Of every robot's lidar.
+        lidar_range: [m].
+        lidar_noise: Standard deviation of a range [m].
+        neighbours: How many of the nearest robots tell each robot where they are and how they move.
+        motion_noise: Factor on the noise of the wheels (see ``corridor_kernels.apply_motion_noise``); 0 = they obey.
+        localization_noise: Standard deviation of ``info["pose"]``: metres, and for the heading radians.
+        stall_rate: How often a robot is held up for some 3 s, by nobody's fault [1/s].
+        decision_period: Time between decisions [s].
+        goal_tolerance: Distance from the goal at which a robot has arrived [m].
+        collision_ends: Whether a robot that touches something is finished; else it drives on.
+        max_episode_steps: Steps after which an episode is truncated; None never. PettingZoo calls it ``max_cycles``.
+        expose_truth: Give ``info["truth"]``, for evaluation.
+        render_mode: None, ``"rgb_array"`` or ``"human"``.
+        progress_weight: Of a metre of the way to the goal.
+        arrival_weight: Of the arrival.
+        collision_weight: Of a collision.
+        time_weight: Of a second on the way.
+        closeness_weight: Of a second right beside something, see ``CorridorEpisodes``.
+        turning_weight: Of a radian turned.
+    """
+
+    map: MapSpec = "office"
+    robots: int = 4
+    places: str | None = None
+    starts: Points | None = None
+    goals: Points | None = None
+    action: str = "continuous"
+    radius: float = 0.105
+    beams: int = 36
+    lidar_range: float = 3.5
+    lidar_noise: float = 0.01
+    neighbours: int = 0
+    motion_noise: float = 1.0
+    localization_noise: float = 0.02
+    stall_rate: float = 0.0
+    decision_period: float = 0.2
+    goal_tolerance: float = 0.15
+    collision_ends: bool = True
+    max_episode_steps: int | None = 1000
+    expose_truth: bool = False
+    render_mode: str | None = None
+    progress_weight: float = 1.0
+    arrival_weight: float = 10.0
+    collision_weight: float = 10.0
+    time_weight: float = 0.1
+    closeness_weight: float = 0.0
+    turning_weight: float = 0.0
+
+    @classmethod
+    def checked(cls, keywords: Mapping[str, Any]) -> "CorridorOptions":
+        """Check keywords and fill in the defaults.
+
+        Raises:
+            ConfigError: An unknown keyword, or a value out of range or of the wrong type.
+        """
+        check_names("a corridor environment", keywords, [field.name for field in fields(cls)])
+        options = cls(**plain(keywords))
+        for name, allowed in _CHOICES.items():
+            check_choice(name, getattr(options, name), allowed)
+        for name, (low, high) in _RANGES.items():
+            check_range(name, getattr(options, name), low, high)
+        for name, (least, most) in _WHOLE.items():
+            check_range(name, getattr(options, name), least, most, whole=True)
+        options._check_rest()
+        return options
+
+    def _check_rest(self) -> None:
+        if self.max_episode_steps is not None:
+            check_range("max_episode_steps", self.max_episode_steps, 1, 10**9, whole=True)
+        for name in ("collision_ends", "expose_truth"):
+            check_switch(name, getattr(self, name))
+        if not isinstance(self.map, str | Floorplan):
+            raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file")
+        if self.places is not None and (
+            not isinstance(self.places, str) or not (self.places in _PLACES or self.places.endswith(".scen"))
+        ):
+            allowed = suggest(str(self.places), [*_PLACES, "a path to a .scen file"])
+            raise ConfigError(f"places = {self.places!r} is not known{allowed}")
+        if (self.starts is None) != (self.goals is None) or (self.starts is not None and self.places is not None):
+            raise ConfigError("starts and goals are given together, and in place of places")
+
+
+_PLACES = ("predefined", "random")

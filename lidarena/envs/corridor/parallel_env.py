@@ -1,0 +1,296 @@
+"""The multi-robot environment for PettingZoo: ``parallel_env`` and ``env``.
+
+from lidarena.envs import corridor_v0
+
+fleet = corridor_v0.parallel_env(map="office", robots=4)
+"""
+
+from collections.abc import Mapping
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from gymnasium.error import ResetNeeded
+from gymnasium.utils import seeding
+from numpy.typing import NDArray
+from pettingzoo import AECEnv, ParallelEnv
+from pettingzoo.utils import parallel_to_aec, wrappers
+
+from lidarena.base.errors import ActionError, ConfigError, suggest
+from lidarena.base.generator_state import generator_from_words, generator_words
+from lidarena.envs.corridor.episodes import CorridorEpisodes
+from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.envs.corridor.rendering import TeamSketch
+from lidarena.envs.corridor.window import close_window, draw_world
+from lidarena.envs.infos import Info, of_world
+from lidarena.world.floorplan import Floorplan
+
+__all__ = ["CorridorEnv", "agent_name", "env", "parallel_env", "raw_env"]
+
+
+def agent_name(robot: int) -> str:
+    """What PettingZoo calls a robot."""
+    return f"robot_{robot}"
+
+
+class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]  # PettingZoo is untyped
+    """Robots share a building; each must reach its goal without touching a wall or another robot.
+
+    ## Description
+
+    Up to 64 discs with a differential drive (0.105 m radius, 0.5 m/s, 2 rad/s) drive in a floor plan, each to a goal of
+    its own. They really collide (pymunk). Their wheels do not quite obey (see ``corridor_kernels.apply_motion_noise``);
+    each has a lidar that sees walls and the other robots, knows the map, and knows its pose in it to 2 cm. The problem,
+    and the floor plans ``office``, ``unstructured``, ``passing`` and ``blocked``, are those of Bennewitz & Burgard
+    (2000). The agents are ``robot_0``, ``robot_1``, …
+
+    ## Action space
+
+    ``action="continuous"``, ``Box(-1, 1, (2,), float32)``: speed 0.5 a₀ m/s (negative: backwards) and turn rate 2 a₁
+    rad/s, for one decision period of 0.2 s. ``action="discrete"``, ``Discrete(7)``:
+
+    | Num | Action | speed [m/s] | turn rate [rad/s] |
+    |-----|------------|------|------|
+    | 0   | stop       | 0    | 0    |
+    | 1   | forward    | 0.5  | 0    |
+    | 2   | left       | 0.4  | 1    |
+    | 3   | right      | 0.4  | -1   |
+    | 4   | turn left  | 0    | 1.5  |
+    | 5   | turn right | 0    | -1.5 |
+    | 6   | back       | -0.2 | 0    |
+
+    ## Observation space
+
+    ``Box(-1, 1, (beams + 8 + 5 · neighbours,), float32)``; n is the number of beams (36):
+
+    | Num | Observation |
+    |-----|-------------|
+    | 0 … n-1 | the beams over 3.5 m, the first one straight ahead, counter-clockwise |
+    | n, n+1  | the goal's bearing in the robot's frame: cos, sin |
+    | n+2     | d / (d + 2 m) of the straight distance d to it |
+    | n+3, n+4 | own speed / 0.5 m/s, own turn rate / 2 rad/s |
+    | n+5, n+6 | the bearing of a point some 0.8 m ahead on the robot's shortest way through the map: cos, sin |
+    | n+7     | l / (l + 2 m) of the length l of that way |
+    | n+8 … n+12 | with ``neighbours``, of the nearest robot: bearing cos, sin; d / (d + 2 m); relative velocity |
+    | …       | the same of the next ones |
+
+    The relative velocity has two parts, along and across the robot's heading, over 1 m/s.
+    The way is that of one robot alone: it knows of no other robot.
+
+    ## Rewards
+
+    A sum of terms, each times its keyword ``…_weight``: ``progress`` (1), ``arrival`` (10), ``collision`` (10),
+    ``time`` (0.1), ``closeness`` (0) and ``turning`` (0), see ``CorridorEpisodes``. ``info["reward_terms"]`` holds them
+    by name.
+
+    ## Starting state
+
+    At rest, at the places that ``places`` names, heading along the shortest way. Places that are drawn can be solved:
+    every robot has a way clear of everybody else's start and goal (a well-formed problem) or, where so many robots
+    leave no room for that, a planner has found a plan.
+
+    ## Episode end
+
+    - Termination of an agent: it is within ``goal_tolerance`` of its goal, or, with ``collision_ends``, it touched
+      something. It stays where it is and is in the others' way.
+    - Truncation of all agents: after ``max_cycles`` (1000) steps.
+
+    ## Info
+
+    By agent: ``pose`` (3,) as localisation gives it, ``goal`` (2,), ``remaining`` length of its way [m], ``arrived``,
+    ``collision``, ``path_length`` [m], ``reward_terms``, ``time`` [s]; ``map`` (rows, columns) int8 with 0 free, 100
+    occupied, ``resolution`` [m], ``origin`` (2,), ``radius`` of the robots [m].
+
+    ## Arguments
+
+    ``max_cycles``, and all others of ``CorridorOptions``.
+
+    ## References
+
+    Bennewitz & Burgard, A probabilistic method for planning collision-free trajectories of multiple mobile robots,
+    2000.
+    """
+
+    metadata: dict[str, Any] = {  # noqa: RUF012 - as PettingZoo declares it
+        "name": "corridor_v0",
+        "render_modes": ["rgb_array", "human"],
+        "render_fps": 5,
+        "is_parallelizable": True,
+    }
+    family = "corridor"
+
+    def __init__(self, max_cycles: int | None = 1000, **keywords: Any) -> None:
+        """Make one world.
+
+        Args:
+            max_cycles: Steps after which an episode is truncated; None never.
+            **keywords: Those of ``CorridorOptions``.
+
+        Raises:
+            LidarenaError: A keyword, floor plan, start or goal that cannot be had.
+        """
+        if "max_episode_steps" in keywords:
+            raise ConfigError("keyword 'max_episode_steps' is called 'max_cycles' here, as everywhere in PettingZoo")
+        options = CorridorOptions.checked(keywords | {"max_episode_steps": max_cycles})
+        self.episodes = CorridorEpisodes(1, options)
+        self.max_cycles, self.render_mode = max_cycles, options.render_mode
+        self.possible_agents = [agent_name(robot) for robot in range(options.robots)]
+        self.agents: list[str] = []
+        self._numbers = {name: robot for robot, name in enumerate(self.possible_agents)}
+        self._observation_spaces = {name: _copy(self.episodes.observation_space) for name in self._numbers}
+        self._action_spaces = {name: _copy(self.episodes.action_space) for name in self._numbers}
+        self._generator: np.random.Generator | None = None
+
+    def observation_space(self, agent: str) -> gym.Space[Any]:
+        """Of an agent; always the same object."""
+        return self._observation_spaces[agent]
+
+    def action_space(self, agent: str) -> gym.Space[Any]:
+        """Of an agent; always the same object."""
+        return self._action_spaces[agent]
+
+    @property
+    def floorplan(self) -> Floorplan:
+        """The floor plan, for pictures."""
+        return self.episodes.core.plan
+
+    @property
+    def options(self) -> CorridorOptions:
+        """The keywords."""
+        return self.episodes.options
+
+    def reset(
+        self, seed: int | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, Info]]:
+        """Begin an episode."""
+        if seed is not None or self._generator is None:
+            self._generator = seeding.np_random(seed)[0]
+        self.episodes.reset([0], [self._generator])
+        self.agents = list(self.possible_agents)
+        return self._observations(self.agents), self._infos(self.agents)
+
+    def step(
+        self, actions: dict[str, Any]
+    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]:
+        """Act for one decision period.
+
+        Args:
+            actions: One for every agent in ``agents``.
+
+        Raises:
+            ActionError: An action that is missing, of an unknown or finished agent, NaN, out of range, or of the wrong
+                shape or type.
+            ResetNeeded: The environment was not reset, or its episode has ended.
+        """
+        if not self.agents:
+            raise ResetNeeded("step() needs a running episode; call reset() first, and again when no agents are left")
+        self._check_agents(actions)
+        everyone = np.zeros((1, len(self.possible_agents), 2)) if self.options.action == "continuous" else None
+        table = np.zeros((1, len(self.possible_agents)), np.int64) if everyone is None else everyone
+        for name, action in actions.items():
+            table[0, self._numbers[name]] = self._checked(name, action)
+        rewards, terminated, truncated = self.episodes.step(table)
+        agents = self.agents
+        self.agents = [n for n in agents if not (terminated[0, self._numbers[n]] or truncated[0, self._numbers[n]])]
+        gains = {name: float(rewards[0, self._numbers[name]]) for name in agents}
+        ended = {name: bool(terminated[0, self._numbers[name]]) for name in agents}
+        cut_off = {name: bool(truncated[0, self._numbers[name]]) for name in agents}
+        return self._observations(agents), gains, ended, cut_off, self._infos(agents)
+
+    def _check_agents(self, actions: dict[str, Any]) -> None:
+        if not isinstance(actions, Mapping):
+            raise ActionError(f"actions of type {type(actions).__name__} were given; a dictionary by agent is needed")
+        for name in actions:
+            if name not in self._numbers:
+                raise ActionError(f"there is no agent {name!r}{suggest(str(name), self.agents)}")
+            if name not in self.agents:
+                arrived = self.episodes.arrived[0, self._numbers[name]]
+                raise ActionError(
+                    f"agent {name!r} is finished, it has {'arrived' if arrived else 'collided'}; "
+                    f"actions are needed for {', '.join(self.agents)}"
+                )
+        for name in self.agents:
+            if name not in actions:
+                raise ActionError(f"the action of agent {name!r} is missing; one is needed for every agent in agents")
+
+    def _checked(self, name: str, action: Any) -> NDArray[np.generic]:
+        """An agent's action, refused here under its name rather than later among all."""
+        space = self._action_spaces[name]
+        try:
+            value = np.asarray(action)
+        except ValueError:  # rows of different lengths
+            value = np.empty(0, object)
+        if space.shape != value.shape or value.dtype.kind not in ("iu" if space.shape == () else "iuf"):
+            raise ActionError(f"the action {action!r} of agent {name!r} is not of its action space {space}")
+        inside = 0 <= value < 7 if space.shape == () else bool((np.abs(value) <= 1.0).all())
+        if not inside:
+            raise ActionError(f"the action {action!r} of agent {name!r} is NaN or outside of its action space {space}")
+        return value
+
+    def _observations(self, agents: list[str]) -> dict[str, NDArray[np.float32]]:
+        rows = self.episodes.observe(hide_finished=False)[0]
+        return {name: rows[self._numbers[name]] for name in agents}
+
+    def _infos(self, agents: list[str]) -> dict[str, Info]:
+        robots, world = self.episodes.robot_infos(), of_world(self.episodes.world_infos(), 0)
+        own = of_world(robots, 0)
+        return {name: of_world(own, self._numbers[name]) | world for name in agents}
+
+    def show(self, sketch: TeamSketch) -> None:
+        """Let a planner's sketch be seen in the picture until the next one."""
+        self.episodes.sketches[0] = sketch
+
+    def render(self) -> NDArray[np.uint8] | None:
+        """Picture (height, width, 3); None without ``render_mode``, or where a window shows it (``"human"``).
+
+        Raises:
+            ResetNeeded: The environment was not reset.
+        """
+        if self.render_mode is None:
+            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+        return draw_world(self.episodes, 0)
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        close_window(self.episodes)
+
+    def state(self) -> NDArray[np.float32]:
+        """What all robots see, (robots, beams + 8)."""
+        rows: NDArray[np.float32] = self.episodes.observe()[0]
+        return rows
+
+    def get_state(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
+        assert self._generator is not None
+        arrays = {name: array.copy() for name, array in self.episodes.arrays().items()}
+        return arrays | {"generators": generator_words(self._generator)[None]}
+
+    def set_state(self, state: dict[str, NDArray[Any]]) -> None:
+        """Continue where ``get_state`` of an environment with the same keywords was called."""
+        self._generator = generator_from_words(state["generators"][0])
+        self.episodes.load_arrays(state)
+        finished, over = self.episodes.finished[0], bool(self.episodes.over[0])
+        self.agents = [name for name, robot in self._numbers.items() if not (finished[robot] or over)]
+
+
+def _copy(space: gym.Space[Any]) -> gym.Space[Any]:
+    """An equal space with a generator of its own."""
+    if isinstance(space, gym.spaces.Discrete):
+        return gym.spaces.Discrete(int(space.n))
+    assert isinstance(space, gym.spaces.Box)
+    return gym.spaces.Box(space.low, space.high, dtype=np.float32)
+
+
+def parallel_env(max_cycles: int | None = 1000, **keywords: Any) -> CorridorEnv:
+    """Make the environment in PettingZoo's parallel form; see ``CorridorEnv``."""
+    return CorridorEnv(max_cycles, **keywords)
+
+
+def raw_env(max_cycles: int | None = 1000, **keywords: Any) -> AECEnv[str, NDArray[np.float32], Any]:
+    """Make the environment in PettingZoo's agent-by-agent form, without wrappers."""
+    return parallel_to_aec(parallel_env(max_cycles, **keywords))
+
+
+def env(max_cycles: int | None = 1000, **keywords: Any) -> AECEnv[str, NDArray[np.float32], Any]:
+    """Make the environment in PettingZoo's agent-by-agent form (AEC), by PettingZoo's conversion."""
+    return wrappers.OrderEnforcingWrapper(raw_env(max_cycles, **keywords))

@@ -1,0 +1,235 @@
+"""Where the robots of a team start and where they go: predefined, random but solvable, given, or from a scenario."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.errors import ConfigError, ScenarioError, TeamError
+from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.planning.team.floor_grid import FloorGrid
+from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
+from lidarena.planning.team.plan import plan_team
+from lidarena.planning.team.well_formed import is_well_formed
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.movingai import load_movingai
+from lidarena.world.scenario import load_scenario
+from lidarena.world.team_drawings import team_places
+
+CELL = 0.2
+"""Side of the cells that teams are planned on, Bennewitz & Burgard's [m]."""
+LEAST_ROOM = 0.2
+"""Random places leave every robot at least a disc of this radius [m]."""
+_SPACING = 2
+"""Random places lie on every so many cells."""
+_DRAWS, _QUICK_DRAWS = 300, 20
+"""So often places are drawn; first such that are known to be solvable at a glance, then such that a planner solves."""
+_ORDERS = 10
+
+Ends = tuple[NDArray[np.float64], NDArray[np.float64]]
+
+
+class StartGoalSampler:
+    """Starts and goals for the episodes of one floor plan.
+
+    Args:
+        options: Checked keywords.
+        plan: The floor plan.
+
+    Attributes:
+        grid: Cells of the floor plan that are blocked.
+
+    Raises:
+        ConfigError: The map has no predefined places, or fewer than there are robots.
+        ScenarioError: The scenario is missing, torn, of another map or too short.
+        TeamError: A start or goal is in a wall, shared, overlapping or out of reach, or a robot fits through no door.
+    """
+
+    def __init__(self, options: CorridorOptions, plan: Floorplan) -> None:
+        self._options, self._plan = options, plan
+        self.grid = FloorGrid.of(plan, CELL)
+        self._fixed = self._given()
+        self._candidates = np.empty(0, np.int64)
+        if self._fixed is not None:
+            self._check(*self._fixed)
+            return
+        room = max(LEAST_ROOM, options.radius + 0.05)
+        self._graph = grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(room))
+        self._candidates = self._predefined() if self._mode() == "predefined" else self._anywhere()
+
+    def draw(self, rng: np.random.Generator) -> Ends:
+        """Starts and goals (robots, 2) each of an episode [m].
+
+        Raises:
+            TeamError: No solvable problem was found.
+        """
+        if self._fixed is not None:
+            return self._fixed
+        robots = self._options.robots
+        for draw in range(_DRAWS):
+            if len(self._candidates) < robots:
+                break
+            starts, goals = (rng.choice(self._candidates, robots, replace=False) for _ in range(2))
+            apart = self._fits(starts) and self._fits(goals) and (starts != goals).all()
+            if apart and (is_well_formed(self._graph, starts, goals) or self._planned(starts, goals, draw)):
+                return self._points(starts), self._points(goals)
+        raise TeamError(
+            f"no solvable starts and goals for {robots} robots were found in map {self._plan.name!r}; "
+            "fewer robots, a smaller radius or a larger map are needed"
+        )
+
+    def _planned(self, starts: NDArray[np.int64], goals: NDArray[np.int64], draw: int) -> bool:
+        """Whether a planner finds a plan, where too little room is left for problems that need none to tell."""
+        if draw < _QUICK_DRAWS:
+            return False
+        cells, radius = self._graph.cells, self._graph.radius
+        ends = cells[starts], cells[goals]
+        return plan_team(self.grid.blocked, *ends, "prioritized_search", 8, radius, math.inf, iterations=_ORDERS).solved
+
+    def _points(self, places: NDArray[np.int64]) -> NDArray[np.float64]:
+        return self.grid.points(self._graph.cells[places])
+
+    def _fits(self, places: NDArray[np.int64]) -> bool:
+        cells = self._graph.cells[places].astype(np.float64)
+        away = np.hypot(*(cells[:, None] - cells[None]).transpose(2, 0, 1)) + 1e9 * np.eye(len(cells))
+        return bool(away.min() >= max(self._graph.apart, 1.0) - 1e-9)
+
+    def _mode(self) -> str:
+        if self._options.places is not None:
+            return self._options.places
+        return "random" if team_places(self._plan.name) is None else "predefined"
+
+    def _given(self) -> Ends | None:
+        """Starts and goals that are the same in every episode; None where they are drawn."""
+        options = self._options
+        if options.starts is not None and options.goals is not None:
+            return self._from_keywords(options.starts, "starts"), self._from_keywords(options.goals, "goals")
+        mode = self._mode()
+        if mode.endswith(".scen"):
+            return self._from_scenario(mode)
+        known = team_places(self._plan.name)
+        if mode != "predefined":
+            return None
+        if known is None:
+            raise ConfigError(f"map {self._plan.name!r} has no predefined places; places='random' draws some")
+        if options.robots > len(known.starts):
+            raise ConfigError(
+                f"robots = {options.robots}, but map {self._plan.name!r} has starts for {len(known.starts)}; "
+                f"at most {len(known.starts)} robots or places='random' are allowed"
+            )
+        return None if known.drawn else (known.starts[: options.robots], known.goals[: options.robots])
+
+    def _from_keywords(self, given: object, name: str) -> NDArray[np.float64]:
+        try:
+            points = np.asarray(given, np.float64)
+        except (TypeError, ValueError):
+            points = np.empty(0)
+        if points.shape != (self._options.robots, 2) or not np.isfinite(points).all():
+            raise ConfigError(
+                f"{name} = {given!r} must be {self._options.robots} points x, y in metres, one for each of the robots"
+            )
+        return points
+
+    def _from_scenario(self, path: str) -> Ends:
+        spec = self._options.map
+        file, _, options = spec.partition("?") if isinstance(spec, str) else ("", "", "")
+        if not file.endswith(".map"):
+            raise ScenarioError(f"scenario {path!r} needs the MovingAI .map that it belongs to, not map {spec!r}")
+        free = load_movingai(file)
+        scenario = load_scenario(path, free, self._options.robots, Path(file).name)
+        cell = float(options.partition("=")[2] or 1.0)  # the only option of such a map, which has been loaded already
+        starts, goals = (cells[:, ::-1].astype(np.float64) + 0.5 for cells in scenario)
+        return starts * cell, goals * cell
+
+    def _predefined(self) -> NDArray[np.int64]:
+        known = team_places(self._plan.name)
+        assert known is not None
+        cells = self.grid.cells(known.starts)
+        places = self._graph.index[cells[:, 0], cells[:, 1]].astype(np.int64)
+        if (places < 0).any():
+            x, y = known.starts[int(np.argmax(places < 0))]
+            raise TeamError(
+                f"a robot of radius {self._options.radius} m does not fit at the place ({x:g}, {y:g}) of map "
+                f"{self._plan.name!r}; a smaller radius is needed"
+            )
+        self._check_doors(places)
+        return places
+
+    def _check_doors(self, places: NDArray[np.int64]) -> None:
+        """Refuse robots that are wider than the doors between some predefined places."""
+        if (self._graph.ahead(int(places[0]))[places] >= UNREACHABLE).any():
+            raise TeamError(
+                f"robots of radius {self._options.radius} m are wider than the doors of map {self._plan.name!r}; "
+                "a smaller radius is needed"
+            )
+
+    def _anywhere(self) -> NDArray[np.int64]:
+        """Places of the largest part that the robots can drive about in, on a lattice."""
+        graph, left = self._graph, np.ones(len(self._graph), np.bool_)
+        largest = np.empty(0, np.int64)
+        while left.any():
+            part = np.flatnonzero(graph.ahead(int(np.argmax(left))) < UNREACHABLE)
+            left[part] = False
+            largest = part if len(part) > len(largest) else largest
+        on_lattice = largest[(graph.cells[largest] % _SPACING == 0).all(axis=1)]
+        chosen = on_lattice if len(on_lattice) >= 4 * self._options.robots else largest
+        if len(chosen) < self._options.robots:
+            raise TeamError(
+                f"map {self._plan.name!r} has no room for {self._options.robots} robots of radius "
+                f"{self._options.radius} m"
+            )
+        return chosen
+
+    def _check(self, starts: NDArray[np.float64], goals: NDArray[np.float64]) -> None:
+        """Refuse places that no team can have."""
+        radius = self._options.radius
+        for kind, points in (("start", starts), ("goal", goals)):
+            for robot, clearance in enumerate(self._plan.clearance(points)):
+                if clearance < radius:
+                    where = "is in a wall" if clearance <= 0 else f"is {clearance:.2f} m from a wall"
+                    x, y = points[robot]
+                    raise TeamError(
+                        f"the {kind} ({x:g}, {y:g}) of robot {robot} {where} of map {self._plan.name!r}; "
+                        f"a robot of radius {radius} m does not fit"
+                    )
+            self._check_apart(kind, points)
+        self._check_reachable(starts, goals)
+
+    def _check_apart(self, kind: str, points: NDArray[np.float64]) -> None:
+        for i in range(len(points)):
+            for j in range(i):
+                away = math.dist(points[i], points[j])
+                if away == 0.0:
+                    raise TeamError(f"robots {j} and {i} share the {kind} ({points[i, 0]:g}, {points[i, 1]:g})")
+                if away < 2 * self._options.radius:
+                    raise TeamError(
+                        f"the {kind}s of robots {j} and {i} overlap: they are {away:.2f} m apart, "
+                        f"their radii need {2 * self._options.radius:g} m"
+                    )
+
+    def _check_reachable(self, starts: NDArray[np.float64], goals: NDArray[np.float64]) -> None:
+        graph, points = (
+            grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(r)) for r in (self._options.radius, 0.0)
+        )
+        for robot, (start, goal) in enumerate(zip(starts, goals, strict=True)):
+            if _leads(graph, self.grid, start, goal):
+                continue
+            x, y = goal
+            reason = "no free way connects them"
+            if _leads(points, self.grid, start, goal):
+                reason = f"with a radius of {self._options.radius} m it is wider than every door on the way"
+            raise TeamError(f"robot {robot} cannot reach its goal ({x:g}, {y:g}) from its start: {reason}")
+
+
+def _leads(graph: GridGraph, grid: FloorGrid, start: NDArray[np.float64], goal: NDArray[np.float64]) -> bool:
+    """Whether a way leads from the place nearest to ``start`` to the one nearest to ``goal``."""
+    here, there = (_nearest(graph, grid, point) for point in (start, goal))
+    return here >= 0 and there >= 0 and bool(graph.ahead(there)[here] < UNREACHABLE)
+
+
+def _nearest(graph: GridGraph, grid: FloorGrid, point: NDArray[np.float64]) -> int:
+    """The place nearest to a point, -1 if none is within two cells."""
+    away = np.hypot(*(grid.points(graph.cells) - point).T)
+    nearest = int(np.argmin(away)) if len(away) else -1
+    return nearest if nearest >= 0 and away[nearest] <= 2 * grid.resolution else -1

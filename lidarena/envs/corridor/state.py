@@ -1,0 +1,189 @@
+"""The multi-robot worlds themselves, batched: physics, sensors, ways; no spaces, rewards or episodes."""
+
+from collections import OrderedDict
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.random_streams import seed_stream
+from lidarena.envs.corridor.kernels import (
+    Ground,
+    MotionNoise,
+    TeamMeasurements,
+    apply_motion_noise,
+    distance_to_goal,
+    find_near,
+    sense,
+)
+from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.envs.corridor.starts_and_goals import StartGoalSampler
+from lidarena.envs.worker_threads import on_threads
+from lidarena.planning.grid.grid_search import path_costs
+from lidarena.planning.team.grid_graph import grid_graph_of
+from lidarena.world.lidar import Lidar, LidarSpec
+from lidarena.world.load import load_floorplan
+from lidarena.world.physics import RobotSpec
+from lidarena.world.team_physics import TeamPhysics
+
+_FINE = 0.05
+"""Cells in which clearances are looked up [m]."""
+_SUBSTEP = 0.07
+"""Of the physics [s]: two robots come at most 7 cm nearer in it."""
+_KEPT_FIELDS = 1024
+_WALL_GAP = 0.03
+"""Ways keep so much more than the radius from walls [m]."""
+_COMFORT, _WALL_COST = 0.4, 1.5
+"""Nearer to a wall than this [m] a way is dearer, right beside it by so many times its length."""
+
+
+class CorridorCore:
+    """``worlds`` teams of robots, stepped together.
+
+    World ``i`` depends on nothing but its own generator and commands: not on the other worlds, nor on their number, nor
+    on the number of threads.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        plan: The floor plan.
+        physics: The true poses; everything that robots may know is in ``senses`` and ``goals``.
+        measurements: What the robots know.
+        goals: (worlds, robots, 2) [m].
+        starts: (worlds, robots, 2) [m].
+        places: Where episodes begin and end.
+        travelled: (worlds, robots) lengths of the true paths [m].
+    """
+
+    def __init__(self, worlds: int, options: CorridorOptions) -> None:
+        self.options, self.worlds, self.robots = options, worlds, options.robots
+        self.plan = load_floorplan(options.map)
+        self.places = StartGoalSampler(options, self.plan)
+        self.robot = RobotSpec(radius=options.radius, max_turn_rate=2.0, substep=_SUBSTEP)
+        self.beam = LidarSpec(options.beams, options.lidar_range, options.lidar_noise)
+        self.lidar = Lidar([self.plan], self.beam)
+        self.physics = TeamPhysics(worlds, self.robots, self.robot)
+        for world in range(worlds):
+            self.physics.furnish(world, self.plan)
+        self._noise = MotionNoise().scaled(options.motion_noise)
+        self._lay_ground()
+        self._allocate()
+
+    def _lay_ground(self) -> None:
+        fine = self.plan.raster(_FINE)
+        clearance = np.where(fine.solid, -fine.clearance, fine.clearance).astype(np.float32)
+        grid = self.places.grid
+        self.ground = Ground(clearance, fine.origin.copy(), _FINE, np.array(grid.origin), grid.resolution)
+        coarse = self.plan.raster(grid.resolution)
+        beyond = coarse.clearance.astype(np.float64) - self.options.radius
+        cost = 1.0 + _WALL_COST * np.clip(1.0 - beyond / _COMFORT, 0.0, 1.0)
+        self._costs = np.where(grid.blocked | (beyond < _WALL_GAP), np.inf, cost)
+        fitting = grid_graph_of(grid.blocked, 8, grid.in_cells(self.options.radius)).index >= 0
+        self._tight_costs = np.where(fitting | np.isfinite(self._costs), cost, np.inf)
+        self._known: OrderedDict[tuple[int, int, bool], NDArray[np.float32]] = OrderedDict()
+
+    def _allocate(self) -> None:
+        shape = (self.worlds, self.robots)
+        self._plan_of = np.zeros(self.worlds, np.int64)
+        self.streams = np.zeros((self.worlds, 4), np.uint64)
+        self.goals, self.starts = np.zeros((*shape, 2)), np.zeros((*shape, 2))
+        self.fields = np.zeros((*shape, *self._costs.shape), np.float32)
+        self._speed_bias, self._stalled = np.zeros(shape), np.zeros(shape)
+        self._near = np.zeros(shape, np.bool_)
+        self.travelled = np.zeros(shape)
+        beams = self.beam.beams
+        self.measurements = TeamMeasurements(
+            np.zeros((*shape, beams)),
+            np.zeros((*shape, beams), np.float32),
+            np.zeros((*shape, 3)),
+            np.zeros((*shape, 2)),
+            np.zeros(shape),
+            np.zeros((*shape, 2)),
+            np.zeros(shape),
+        )
+
+    def reset_world(self, world: int, rng: np.random.Generator) -> None:
+        """Begin a new episode in one world; everything random is drawn from ``rng``."""
+        starts, goals = self.places.draw(rng)
+        self.starts[world], self.goals[world] = starts, goals
+        self.streams[world] = seed_stream(rng)
+        self._speed_bias[world] = self._noise.speed_bias * rng.standard_normal(self.robots)
+        self._stalled[world] = self.travelled[world] = 0.0
+        self._look_up_ways(world)
+        self.physics.poses[world, :, :2] = starts
+        self.measurements.remaining[world] = np.hypot(*(goals - starts).T)
+        for robot in range(self.robots):
+            x, y = starts[robot].tolist()
+            lookahead_point = self.measurements.lookahead_point[world, robot]
+            distance_to_goal(self.fields[world, robot], goals[robot], x, y, self.ground, 1e6, lookahead_point)
+            self.physics.poses[world, robot, 2] = np.arctan2(lookahead_point[1] - y, lookahead_point[0] - x)
+        self._perceive(self.physics.poses, world, world + 1)
+
+    def _look_up_ways(self, world: int) -> None:
+        for robot, (row, col) in enumerate(self.places.grid.cells(self.goals[world]).tolist()):
+            self.fields[world, robot] = self._field((row, col))
+            (x, y), goal = self.starts[world, robot].tolist(), self.goals[world, robot]
+            if distance_to_goal(self.fields[world, robot], goal, x, y, self.ground, np.inf, np.empty(2)) == np.inf:
+                self.fields[world, robot] = self._field((row, col), tight=True)
+
+    def _field(self, cell: tuple[int, int], tight: bool = False) -> NDArray[np.float32]:
+        """Lengths of the ways from everywhere to a cell [m], 1e9 where there is none.
+
+        ``tight``: through whatever a robot just fits through, for those whom the room beside the walls leaves no way.
+        """
+        key = (*cell, tight)
+        if key not in self._known:
+            costs = self._tight_costs if tight else self._costs
+            lengths = path_costs(costs, cell) * self.places.grid.resolution
+            self._known[key] = np.where(np.isfinite(lengths), lengths, 1e9).astype(np.float32)
+            if len(self._known) > _KEPT_FIELDS:
+                self._known.popitem(last=False)
+        return self._known[key]
+
+    def step(self, commands: NDArray[np.float64]) -> None:
+        """Drive every robot for one decision period.
+
+        Args:
+            commands: (worlds, robots, 2) speed [m/s] and turn rate [rad/s]; changed into what the wheels do.
+        """
+        before, period = self.physics.poses.copy(), self.options.decision_period
+        apply_motion_noise(
+            commands, period, self._noise, self.options.stall_rate, self.streams, self._speed_bias, self._stalled
+        )
+        find_near(commands, period, self.robot.radius, before, self.ground, self._near)
+        self.physics.advance(commands, period, self._near)
+        self.travelled += np.sqrt(((self.physics.poses - before)[..., :2] ** 2).sum(axis=-1))
+        self._perceive(before, 0, self.worlds)
+
+    def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
+        """Let the robots of worlds first … last - 1 sense."""
+        counter = np.array([first])
+        on_threads(
+            last - first,
+            lambda thread: sense(
+                counter, last, before, self.physics.poses, self._plan_of, self.streams, self.options.decision_period,
+                self.robot.radius, self.options.localization_noise, self.beam, self.lidar.geometry,
+                self.lidar.directions, self.ground, self.fields, self.goals, self.measurements,
+            ),
+        )  # fmt: skip
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Every array that makes up the worlds' state, by name."""
+        named: dict[str, NDArray[Any]] = {"poses": self.physics.poses, "streams": self.streams, "goals": self.goals}
+        named |= {
+            "starts": self.starts,
+            "speed_bias": self._speed_bias,
+            "stalled": self._stalled,
+            "travelled": self.travelled,
+        }
+        named |= {"touched_wall": self.physics.touched_wall, "touched_robot": self.physics.touched_robot}
+        return named | {f"measurements.{name}": array for name, array in self.measurements._asdict().items()}
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of another core with the same options."""
+        for name, array in self.arrays().items():
+            array[...] = saved[name]
+        for world in range(self.worlds):
+            self._look_up_ways(world)

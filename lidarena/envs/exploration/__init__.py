@@ -1,0 +1,1 @@
+"""Active SLAM: the exploration family."""

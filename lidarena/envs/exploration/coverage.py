@@ -1,0 +1,66 @@
+"""Map completeness: which cells of a floor plan a robot can come to know."""
+
+from typing import NamedTuple
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.world.floorplan import START_CLEARANCE, Floorplan
+from lidarena.world.raster import Raster
+
+START_MARGIN = 0.25
+"""Random starts keep this far from every wall [m]."""
+
+
+class Coverage(NamedTuple):
+    """What can be covered of one floor plan, on its grid ``[row, column]``.
+
+    Attributes:
+        wanted: bool; K, the free space that the robot's disc can reach and the wall cells next to it.
+        starts: (n, 2) centres of the cells where a robot may be put at random [m].
+        origin: (2,) lower-left corner of the grid [m].
+    """
+
+    wanted: NDArray[np.bool_]
+    starts: NDArray[np.float64]
+    origin: NDArray[np.float64]
+
+
+def measure_coverage(plan: Floorplan, resolution: float, radius: float) -> Coverage:
+    """Find K, against whose size completeness is measured: |known ∩ K| / |K|.
+
+    A cell is wanted if the robot's disc, moving from the plan's start with its centre at least ``START_CLEARANCE`` from
+    every wall, can cover it, or if it is a wall cell whose surface borders such cells: 100% is attainable in every
+    world. (Counting the whole grid, as DA-SLAM's code does, would end at a share that depends on the drawing.)
+
+    Args:
+        plan: The floor plan, with its start.
+        resolution: Side of a cell [m].
+        radius: Of the robot [m].
+    """
+    raster = plan.raster(resolution)
+    passable = ~raster.solid & (raster.clearance >= START_CLEARANCE)
+    reached = _connected(passable, raster, plan.start)
+    away = cv2.distanceTransform((~reached).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * resolution
+    covered = ~raster.solid & (away <= radius + 0.5 * resolution)
+    beside = cv2.dilate(covered.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
+    surface = raster.solid & (raster.clearance <= 0.55 * resolution)
+    return Coverage(covered | (surface & beside), _start_places(reached, raster), raster.origin)
+
+
+def _connected(passable: NDArray[np.bool_], raster: Raster, start: tuple[float, float, float]) -> NDArray[np.bool_]:
+    _, labels = cv2.connectedComponents(passable.astype(np.uint8), connectivity=4)
+    column, row = np.floor((np.array(start[:2]) - raster.origin) / raster.resolution).astype(int)
+    label = labels[row, column]
+    if not passable[row, column]:  # the start itself is passable, its cell's centre may be a hair too close
+        near = labels[max(row - 1, 0) : row + 2, max(column - 1, 0) : column + 2]
+        label = near.max()
+    reached: NDArray[np.bool_] = (labels == label) & (labels > 0)
+    return reached
+
+
+def _start_places(reached: NDArray[np.bool_], raster: Raster) -> NDArray[np.float64]:
+    roomy = reached & (raster.clearance >= START_MARGIN)
+    cells = np.argwhere(roomy if roomy.any() else reached)
+    return raster.origin + (cells[:, ::-1] + 0.5) * raster.resolution

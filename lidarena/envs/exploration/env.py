@@ -1,0 +1,185 @@
+"""Active SLAM: a robot with a lidar explores an unknown world, its map and pose coming out of a particle filter."""
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_vector_env import BatchedWorlds, Outcome, whole_number_of_worlds
+from lidarena.envs.exploration.episodes import ExplorationEpisodes
+from lidarena.envs.exploration.options import ExplorationOptions
+from lidarena.envs.exploration.rendering import draw_exploration
+from lidarena.envs.infos import Info, of_world, row_of
+from lidarena.world.floorplan import Floorplan
+
+
+class ExplorationEnv(SingleWorld):
+    """Explore an unknown world and map it, without losing track of where you are.
+
+    ## Description
+
+    A TurtleBot3 Burger (a disc of 0.105 m radius with a differential drive) starts at a known pose in an unknown floor
+    plan. Its odometry drifts (gmapping's noise model); a 360-beam lidar of 3.5 m range and 1 cm noise feeds a
+    Rao-Blackwellised particle filter, which estimates pose and map. Reward and observation are those of DA-SLAM
+    (Alcalde et al. 2022), whose worlds are ``lidarena/Env1-v0`` … ``lidarena/Env4-v0``; ``lidarena/Exploration-v0``
+    takes any floor plan.
+
+    ## Action space
+
+    ``action="discrete"``, ``Discrete(3)``, each for one decision period of 0.2 s:
+
+    | Num | Action | speed [m/s] | turn rate [rad/s] |
+    |-----|---------|------|------|
+    | 0   | forward | 0.5  | 0    |
+    | 1   | left    | 0.05 | 0.3  |
+    | 2   | right   | 0.05 | -0.3 |
+
+    ``action="continuous"``, ``Box(-1, 1, (2,), float32)``: speed 0.25 (a₀ + 1) m/s and turn rate a₁ · 1.0 rad/s.
+
+    ## Observation space
+
+    ``observation="da_slam"``, ``Box(0, 1, (7,), float32)``:
+
+    | Num | Observation |
+    |-----|-------------|
+    | 0–4 | beams at 0, 45, 90, -45, -90 degrees, over 3.5 m |
+    | 5   | previous action / 2 (continuous: two numbers, each mapped to [0, 1]) |
+    | 6   | completeness; with ``reward="d_optimality"`` the entropy of the particles' weights / ln N |
+
+    ``observation="sectors"``, ``Box(0, 1, (38,), float32)``: the same, except that 0–35 are the nearest hits in 36
+    sectors of 10 degrees, the first one centred straight ahead, counter-clockwise. A wall's end between two of the five
+    beams cannot hide from it.
+
+    ``observation="compass"``, ``Box(0, 1, (76,), float32)``, also says which way the edge of the known map lies:
+
+    | Num   | Observation |
+    |-------|-------------|
+    | 0–35  | 0.12 m over the nearest hit in each of the same sectors |
+    | 36–71 | to how much of the frontier each sector leads, around walls, see ``frontier_histogram`` |
+    | 72–73 | (1 + cos) / 2, (1 + sin) / 2 of the mean direction of these; 0.5, 0.5 where there is none |
+    | 74–75 | as 5 and 6 above |
+
+    ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
+
+    ## Rewards
+
+    - ``reward="completeness"`` (eq. 2): -100 on a collision, else the gain in map completeness in percentage points.
+      Completeness is the known share of K, the cells that the robot can come to know (``measure_coverage``).
+    - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's
+      covariance.
+    - ``reward="combined"``: what a comparison measures, all at once: completeness - path - mean of ln D - collisions,
+      weighed by ``weights``, uncertainty more in larger floor plans; see ``CombinedReward``.
+
+    ``info["reward_terms"]`` holds the terms by name.
+
+    ## Starting state
+
+    The map's own start, ``start=(x, y, theta)``, or ``start="random"``: any reachable place 0.25 m from the walls, any
+    heading. The filter knows the start: its frame is the floor plan's.
+
+    ## Episode end
+
+    - Termination: some beam is shorter than ``collision_distance`` (0.12 m), or completeness reached ``stop_at``.
+    - Truncation: after ``max_episode_steps`` (1000) steps, or after ``patience`` seconds (never) without 0.1% more.
+
+    ## Info
+
+    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat],
+    ``n_eff``, ``entropy_gmapping`` (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``),
+    ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``odometry_pose`` (3,), ``reward_terms``; ``map``
+    (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change),
+    ``resolution`` [m], ``origin`` (2,).
+    What depends on the truth is ``completeness`` (and with it the reward), ``collision`` (a bumper) and, only with
+    ``expose_truth=True``, ``truth``: ``pose`` and ``path_length``.
+
+    ## Arguments
+
+    See ``ExplorationOptions``.
+
+    ## References
+
+    Alcalde et al., DA-SLAM: Deep Active SLAM based on Deep Reinforcement Learning, LARS 2022. Grisetti, Stachniss,
+    Burgard, Improved techniques for grid mapping with Rao-Blackwellized particle filters, T-RO 2007.
+    """
+
+    metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012 - as gym.Env declares it
+
+    def __init__(self, **keywords: Any) -> None:
+        """Make one world; the keywords are those of ``ExplorationOptions``.
+
+        Raises:
+            ConfigError: A keyword that is unknown or out of range.
+            MapError: A floor plan or start that cannot be used.
+        """
+        options = ExplorationOptions.checked(keywords)
+        self._episodes = ExplorationEpisodes(1, options)
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(*spaces, options.render_mode)
+
+    def _begin(self, seed: int | None) -> None:
+        self._episodes.reset([0], [self.np_random])
+
+    def _advance(self, action: Any) -> tuple[float, bool, bool]:
+        rewards, terminated, truncated = self._episodes.step([action])
+        return float(rewards[0]), bool(terminated[0]), bool(truncated[0])
+
+    def _observe(self) -> Any:
+        return row_of(self._episodes.observe(), 0)
+
+    def _info(self) -> Info:
+        info = of_world(self._episodes.infos(), 0)
+        info["map"] = info["map"].copy()
+        info["map"].flags.writeable = False
+        return info
+
+    @property
+    def floorplan(self) -> Floorplan:
+        """The world's true floor plan, for pictures; no policy may look at it."""
+        core = self._episodes.core
+        return core.plans[int(core.plan[0])]
+
+    def _picture(self) -> NDArray[np.uint8] | None:
+        recorder = self._episodes.recorder
+        return None if recorder is None else draw_exploration(self._episodes.core, recorder, 0)
+
+
+class BatchedExploration(BatchedWorlds):
+    """``num_envs`` exploration worlds in one step; world ``i`` is ``ExplorationEnv`` with seed ``seed + i`` to the bit.
+
+    See ``BatchedWorlds``; spaces, rewards and keywords: ``ExplorationEnv``.
+
+    Args:
+        num_envs: Number of worlds.
+        keywords: Those of ``ExplorationOptions``.
+    """
+
+    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+        """Make the worlds; raises like ``ExplorationEnv``."""
+        worlds = whole_number_of_worlds(num_envs)
+        options = ExplorationOptions.checked(keywords)
+        self._episodes = ExplorationEpisodes(worlds, options)
+        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
+        super().__init__(worlds, worlds, self._episodes, spaces, options.render_mode)
+
+    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
+        self._episodes.reset(worlds, self._generators)
+
+    def _advance(self, actions: Any) -> Outcome:
+        return self._episodes.step(actions)
+
+    def _observe(self) -> Any:
+        return self._episodes.observe()
+
+    def _infos(self) -> Info:
+        return self._episodes.infos()
+
+    def _last_infos(self) -> Info:
+        last = self._episodes.infos()
+        del last["map"]  # a view on maps that are about to be forgotten
+        return last
+
+    def _picture(self, world: int) -> NDArray[np.uint8] | None:
+        recorder = self._episodes.recorder
+        return None if recorder is None else draw_exploration(self._episodes.core, recorder, world)

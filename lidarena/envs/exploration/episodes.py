@@ -1,0 +1,149 @@
+"""Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
+
+from collections.abc import Iterable, Sequence
+from contextlib import nullcontext
+from typing import Any
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.compilation import announced_compilation
+from lidarena.envs.exploration.actions import action_space, commands_of
+from lidarena.envs.exploration.observations import make_observer
+from lidarena.envs.exploration.options import ExplorationOptions
+from lidarena.envs.exploration.rendering import PathRecorder
+from lidarena.envs.exploration.rewards import make_reward
+from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
+from lidarena.envs.infos import Info
+
+_GAIN = 0.001
+"""Share of the map that counts as a gain where patience is limited."""
+
+
+class ExplorationEpisodes:
+    """Runs episodes in ``worlds`` worlds; whoever owns it decides when a world is reset.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        core: The worlds.
+        single_observation_space: Of one world.
+        single_action_space: Of one world.
+        recorder: Paths for the picture, None unless the worlds are drawn.
+    """
+
+    def __init__(self, worlds: int, options: ExplorationOptions) -> None:
+        self.options = options
+        self.core = ExplorationCore(worlds, options)
+        self.single_action_space: gym.Space[Any] = action_space(options.action)
+        parts = 1 if options.action == "discrete" else 2
+        uncertain = options.reward == "d_optimality"
+        self.observer = make_observer(options.observation, parts, uncertain, self.core.beam.beams)
+        self.single_observation_space = self.observer.space
+        self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
+        self._steps = np.zeros(worlds, np.int64)
+        self._previous = np.zeros((worlds, parts))
+        self._completeness = np.zeros(worlds)
+        self._gained, self._gained_at = np.zeros(worlds), np.zeros(worlds, np.int64)
+        self._reward = make_reward(self.core, options)
+        self._compiled = False
+
+    def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
+        """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
+        with nullcontext() if self._compiled else announced_compilation():
+            for world in worlds:
+                self.core.reset_world(world, generators[world])
+                self._steps[world] = self._gained_at[world] = 0
+                self._gained[world] = 0.0
+                self._previous[world] = 0.0
+                if self.recorder is not None:
+                    self.recorder.begin(world, self.core)
+                self._reward.begin(world)
+        self._completeness = self.core.completeness
+
+    def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
+        """Act in every world; returns rewards, terminated and truncated, each (worlds,).
+
+        Raises:
+            ActionError: See ``drive_actions.commands_of``.
+        """
+        commands = commands_of(self.options.action, actions, self.core.worlds)
+        with nullcontext() if self._compiled else announced_compilation():
+            self.core.step(commands)
+        self._compiled = True
+        self._steps += 1
+        self._remember(np.asarray(actions, dtype=np.float64))
+        before, self._completeness = self._completeness, self.core.completeness
+        rewards = self._reward.grade(self._completeness - before)
+        terminated = self.core.sensors.collision.copy()
+        if self.options.stop_at is not None:
+            terminated |= self._completeness >= self.options.stop_at
+        if self.recorder is not None:
+            self.recorder.record(self.core)
+        return rewards, terminated, self._truncated()
+
+    def _truncated(self) -> NDArray[np.bool_]:
+        """Which worlds have run out of steps, or of patience."""
+        gain = self._completeness >= self._gained + _GAIN
+        self._gained[gain], self._gained_at[gain] = self._completeness[gain], self._steps[gain]
+        truncated = np.zeros(self.core.worlds, np.bool_)
+        if self.options.max_episode_steps is not None:
+            truncated |= self._steps >= self.options.max_episode_steps
+        if self.options.patience is not None:
+            truncated |= (self._steps - self._gained_at) * self.options.decision_period >= self.options.patience
+        return truncated
+
+    def _remember(self, actions: NDArray[np.float64]) -> None:
+        if self.options.action == "discrete":
+            self._previous[:, 0] = actions / 2.0
+        else:
+            self._previous[:] = 0.5 * (actions + 1.0)
+
+    def observe(self) -> Any:
+        """Fresh observations of all worlds."""
+        return self.observer.observe(self.core, self._previous)
+
+    def infos(self) -> Info:
+        """What every step tells, as arrays over worlds; ``map`` is a read-only view that later steps change."""
+        core = self.core
+        view = core.maps.occupancy[:]
+        view.flags.writeable = False
+        info: Info = {
+            "completeness": self._completeness.copy(),
+            "pose": core.estimate.copy(),
+            "covariance": core.covariance.copy(),
+            "d_optimality": core.criteria[:, 0].copy(),
+            "entropy": core.criteria[:, 1].copy(),
+            "n_eff": core.criteria[:, 2].copy(),
+            "entropy_gmapping": core.criteria[:, 3].copy(),
+            "path_length": core.sensors.path_length.copy(),
+            "time": self._steps * self.options.decision_period,
+            "collision": core.sensors.collision.copy(),
+            "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
+            "reward_terms": {name: term.copy() for name, term in self._reward.terms.items()},
+            "map": view,
+            "resolution": np.full(core.worlds, RESOLUTION),
+            "origin": core.maps.origin.copy(),
+        }
+        if self.options.expose_truth:
+            truth = {"pose": core.physics.poses[:, 0].copy(), "path_length": core.sensors.true_path_length.copy()}
+            info["truth"] = truth
+        return info
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, by name, except the generators."""
+        own = {"steps": self._steps, "previous": self._previous, "completeness": self._completeness}
+        own |= {"gained": self._gained, "gained_at": self._gained_at}
+        return own | self._reward.arrays() | self.core.arrays()
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of other episodes with the same options."""
+        self._steps[:], self._previous[:] = saved["steps"], saved["previous"]
+        self._completeness = saved["completeness"].copy()
+        self._gained[:], self._gained_at[:] = saved["gained"], saved["gained_at"]
+        for name, array in self._reward.arrays().items():
+            array[:] = saved[name]
+        self.core.load_arrays(saved)

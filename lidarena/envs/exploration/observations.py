@@ -1,0 +1,184 @@
+"""What an exploration agent sees: DA-SLAM's seven numbers, ranges all around, or a picture of the map around it."""
+
+import math
+from typing import Any, Protocol
+
+import gymnasium as gym
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.jit import leaf
+from lidarena.envs.exploration.frontier_directions import frontier_histogram, mean_direction
+from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
+from lidarena.world.floorplan import START_CLEARANCE
+
+FRONT_BEAMS = (0, 45, 90, 315, 270)
+"""Beams of DA-SLAM's observation: 0, 45, 90, -45 and -90 degrees."""
+SECTORS = 36
+"""Sectors of equal width, the first one centred straight ahead."""
+PICTURE = 64
+"""Rows and columns of the egocentric picture."""
+PICTURE_CELL = 0.1
+"""Side of one of its pixels [m]."""
+VARIANCE_BOUND = 1e6
+"""No pose in a map of at most 1 km a side varies more [m²]; Gymnasium asks for finite bounds."""
+
+
+class Observer(Protocol):
+    """Makes the observations of a batch."""
+
+    space: gym.Space[Any]
+
+    def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> Any:
+        """Fresh observations of all worlds, given what they did last as numbers in [0, 1] ``(worlds, k)``."""
+
+
+class PaperObserver:
+    """DA-SLAM's state s_t = [O_t, a_(t-1), r_(t-1)] (eq. 4).
+
+    Five beams over the maximum range, the previous action (number over 2; continuous: both parts mapped to [0, 1]), and
+    the completeness, or for the uncertainty reward the entropy over ln N; every entry in [0, 1].
+
+    Args:
+        action_parts: Numbers that the previous action takes up.
+        uncertain: Whether the last entry is the entropy.
+    """
+
+    looks = len(FRONT_BEAMS)
+
+    def __init__(self, action_parts: int, uncertain: bool) -> None:
+        self._uncertain = uncertain
+        self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (self.looks + action_parts + 1,), np.float32)
+
+    def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
+        """``(worlds, looks + 1 + k)`` float32."""
+        last = scaled_entropy(core) if self._uncertain else core.completeness
+        return np.concatenate([self._look(core), previous, last[:, None]], axis=1, dtype=np.float32)
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        """What is seen, in [0, 1], (worlds, looks)."""
+        seen: NDArray[np.float32] = core.sensors.scans[:, 0, FRONT_BEAMS]
+        return seen / core.beam.max_range
+
+
+class SectorObserver(PaperObserver):
+    """DA-SLAM's state with the nearest hit in each of ``SECTORS`` sectors in place of five single beams.
+
+    Nothing fits between the beams of a sector, where DA-SLAM's five leave 45 degrees unseen.
+    """
+
+    looks = SECTORS
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        return nearest_hits(core.sensors.scans[:, 0]) / core.beam.max_range
+
+
+class CompassObserver(PaperObserver):
+    """DA-SLAM's state with walls as near as they are, and which way to drive, in place of five beams.
+
+    First how near the nearest hit in each sector is, ``START_CLEARANCE`` over the range: a wall far off, which says
+    little, hardly shows, whereas the range itself differs most there. Then how much of the map's edge each sector leads
+    to, see ``frontier_histogram``, and their mean direction like a compass needle, (1 + cos) / 2 and (1 + sin) / 2.
+    """
+
+    looks = 2 * SECTORS + 2
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        nearest = nearest_hits(core.sensors.scans[:, 0])
+        edge = frontier_histogram(core.maps.occupancy, core.maps.origin, core.estimate, nearest, RESOLUTION)
+        near = np.float32(START_CLEARANCE) / np.maximum(nearest, np.float32(START_CLEARANCE))
+        return np.concatenate([near, edge, mean_direction(edge)], axis=1)
+
+
+class MapObserver:
+    """A dictionary: ``map``, ``scan``, ``covariance``, ``state``.
+
+    - ``map`` (3, 64, 64) uint8: 6.4 m × 6.4 m of the believed map around the believed pose, the robot in the middle,
+      heading up; 255 where a pixel holds an occupied cell, a free cell, and no known cell at all (three channels).
+    - ``scan`` (360,) float32: all beams over the maximum range, the first one straight ahead, counter-clockwise.
+    - ``covariance`` (6,) float32: xx, xy, xθ, yy, yθ, θθ of the pose's covariance [m², m rad, rad²].
+    - ``state`` float32: previous action (as in DA-SLAM's observation), completeness, entropy over ln N.
+
+    Args:
+        action_parts: Numbers that the previous action takes up.
+        beams: Of the lidar.
+    """
+
+    def __init__(self, action_parts: int, beams: int) -> None:
+        self.space: gym.Space[Any] = gym.spaces.Dict(
+            {
+                "map": gym.spaces.Box(0, 255, (3, PICTURE, PICTURE), np.uint8),
+                "scan": gym.spaces.Box(0.0, 1.0, (beams,), np.float32),
+                "covariance": gym.spaces.Box(-VARIANCE_BOUND, VARIANCE_BOUND, (6,), np.float32),
+                "state": gym.spaces.Box(0.0, 1.0, (action_parts + 2,), np.float32),
+            }
+        )
+
+    def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> dict[str, NDArray[Any]]:
+        """Each entry with a leading axis of worlds."""
+        picture = np.empty((core.worlds, 3, PICTURE, PICTURE), np.uint8)
+        crop_maps(core.maps.occupancy, core.maps.origin, core.estimate, picture)
+        rows, columns = np.triu_indices(3)
+        last = np.stack([core.completeness, scaled_entropy(core)], axis=1)
+        return {
+            "map": picture,
+            "scan": core.sensors.scans[:, 0] / np.float32(core.beam.max_range),
+            "covariance": core.covariance[:, rows, columns].astype(np.float32),
+            "state": np.concatenate([previous, last], axis=1).astype(np.float32),
+        }
+
+
+def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> Observer:
+    """Make what the keyword ``observation`` names."""
+    if kind == "map":
+        return MapObserver(action_parts, beams)
+    flat = {"da_slam": PaperObserver, "sectors": SectorObserver, "compass": CompassObserver}
+    return flat[kind](action_parts, uncertain)
+
+
+def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
+    """The nearest hit of each sector [m], (worlds, SECTORS), in scans (worlds, beams)."""
+    width = scans.shape[1] // SECTORS
+    around = np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width)
+    nearest: NDArray[np.float32] = around.min(axis=2)
+    return nearest
+
+
+def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:
+    """Entropy of the particles' weights over its maximum ln N, (worlds,) in [0, 1]."""
+    most = math.log(max(core.options.particles, 2))
+    return np.clip(core.criteria[:, 1] / most, 0.0, 1.0)
+
+
+@leaf
+def crop_maps(
+    occupancy: NDArray[np.int8], origins: NDArray[np.float64], poses: NDArray[np.float64], out: NDArray[np.uint8]
+) -> None:
+    """Draw the maps around the poses, heading up.
+
+    Args:
+        occupancy: (worlds, rows, columns) -1, 0, 100.
+        origins: (worlds, 2) [m].
+        poses: (worlds, 3).
+        out: (worlds, 3, size, size) output, see ``MapObserver``.
+    """
+    size, half_cell = out.shape[2], 0.5 * RESOLUTION
+    rows, columns = occupancy.shape[1:]
+    for w in range(out.shape[0]):
+        cos, sin = math.cos(poses[w, 2]), math.sin(poses[w, 2])
+        for i in range(size):
+            ahead = (0.5 * size - 0.5 - i) * PICTURE_CELL
+            for j in range(size):
+                left = (0.5 * size - 0.5 - j) * PICTURE_CELL
+                x = poses[w, 0] + cos * ahead - sin * left - origins[w, 0]
+                y = poses[w, 1] + sin * ahead + cos * left - origins[w, 1]
+                wall = free = False
+                for k in range(4):  # the four cells that a pixel of twice their size holds
+                    c = math.floor((x + (half_cell if k & 1 else -half_cell)) / RESOLUTION)
+                    r = math.floor((y + (half_cell if k & 2 else -half_cell)) / RESOLUTION)
+                    if 0 <= r < rows and 0 <= c < columns:
+                        wall = wall or occupancy[w, r, c] == 100
+                        free = free or occupancy[w, r, c] == 0
+                out[w, 0, i, j] = 255 if wall else 0
+                out[w, 1, i, j] = 255 if free and not wall else 0
+                out[w, 2, i, j] = 0 if wall or free else 255

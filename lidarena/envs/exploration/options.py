@@ -1,0 +1,152 @@
+"""Keywords of the exploration environments, checked at the border."""
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, fields
+from typing import Any
+
+from lidarena.base.errors import ConfigError, MapError, suggest
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch, plain
+from lidarena.envs.exploration.coverage import START_MARGIN
+from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
+
+ETA = 1.2e-4
+"""η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). DA-SLAM
+prints 1, with which every step is worth 2."""
+
+COMBINED_WEIGHTS = {"completeness": 10.0, "path": 1.0, "uncertainty": 1.0, "collision": 10.0}
+"""Default weights of the combined reward: a whole drive is worth more than none also in the real buildings."""
+CERTAIN_ENOUGH = 1.3e-4
+"""The usual D-optimality of an exploring robot in Env-1 to Env-4."""
+
+MapSpec = str | Floorplan
+_CHOICES = {
+    "reward": ("completeness", "d_optimality", "combined"),
+    "observation": ("da_slam", "sectors", "compass", "map"),
+    "action": ("discrete", "continuous"),
+    "slam": ("rbpf", "truth"),
+    "render_mode": (None, "rgb_array"),
+}
+_PARTICLES = (1, 1000)
+_RANGES = {
+    "lidar_noise": (0.0, 1.0),
+    "odometry_noise": (0.0, 100.0),
+    "decision_period": (0.01, 2.0),
+    "collision_distance": (START_CLEARANCE, START_MARGIN),
+    "eta": (1e-12, 1e6),
+    "certain_enough": (1e-12, 1e6),
+}
+
+
+@dataclass(frozen=True)
+class ExplorationOptions:
+    """Keywords of ``lidarena/Exploration-v0`` and ``lidarena/Env1-v0`` … ``Env4-v0``.
+
+    Attributes:
+        map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them
+            from which every reset draws one.
+        reward: ``"completeness"`` (DA-SLAM's eq. 2), ``"d_optimality"`` (eq. 3), or ``"combined"``: the whole map on
+            a short path with a certain pose.
+        observation: ``"da_slam"`` (DA-SLAM's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
+            five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary
+            with an egocentric picture of the map).
+        action: ``"discrete"`` (DA-SLAM's three) or ``"continuous"``.
+        slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.
+        particles: Of the filter.
+        lidar_noise: Standard deviation of a range [m].
+        odometry_noise: Factor on gmapping's motion noise; 0 is perfect odometry.
+        decision_period: Time between decisions [s].
+        collision_distance: Range of a beam below which it is a collision [m], DA-SLAM's by default; a larger one in
+            training teaches a margin. No more than the 0.25 m that random starts keep from the walls.
+        max_episode_steps: Steps after which an episode is truncated; None never.
+        start: (x, y, theta) in the map's frame, ``"random"``, or None for the map's own.
+        stop_at: Completeness that ends an episode as done; None never.
+        patience: Time without 0.1% more completeness after which an episode is truncated [s]; None never.
+        expose_truth: Give ``info["truth"]``, for evaluation.
+        render_mode: None or ``"rgb_array"``.
+        eta: η of the uncertainty reward [m^(4/3) rad^(2/3)].
+        weights: Of the combined reward, by the names of its terms: ``completeness``, ``path``, ``uncertainty``,
+            ``collision``; those left out keep their defaults.
+        certain_enough: D-optimality from which on down the combined reward pays for no more certainty
+            [m^(4/3) rad^(2/3)].
+    """
+
+    map: MapSpec | Sequence[MapSpec] = "willow_lobby"
+    reward: str = "completeness"
+    observation: str = "da_slam"
+    action: str = "discrete"
+    slam: str = "rbpf"
+    particles: int = 30
+    lidar_noise: float = 0.01
+    odometry_noise: float = 1.0
+    decision_period: float = 0.2
+    collision_distance: float = START_CLEARANCE
+    max_episode_steps: int | None = 1000
+    start: Pose | str | None = None
+    stop_at: float | None = 0.995
+    patience: float | None = None
+    expose_truth: bool = False
+    render_mode: str | None = None
+    eta: float = ETA
+    weights: Mapping[str, float] | None = None
+    certain_enough: float = CERTAIN_ENOUGH
+
+    @classmethod
+    def checked(cls, keywords: Mapping[str, Any]) -> "ExplorationOptions":
+        """Check keywords and fill in the defaults.
+
+        Raises:
+            ConfigError: An unknown keyword, or a value out of range or of the wrong type.
+            MapError: A start that is neither a pose, ``"random"`` nor None.
+        """
+        check_names("an exploration environment", keywords, [field.name for field in fields(cls)])
+        options = cls(**plain(keywords))
+        for name, allowed in _CHOICES.items():
+            check_choice(name, getattr(options, name), allowed)
+        for name, (low, high) in _RANGES.items():
+            check_range(name, getattr(options, name), low, high)
+        options._check_rest()
+        return options
+
+    def _check_rest(self) -> None:
+        if self.max_episode_steps is not None:
+            check_range("max_episode_steps", self.max_episode_steps, 1, 10**9, whole=True)
+        if self.stop_at is not None:
+            check_range("stop_at", self.stop_at, 0.0, 1.0)
+        if self.patience is not None:
+            check_range("patience", self.patience, 0.01, 1e9)
+        check_range("particles", self.particles, *_PARTICLES, whole=True)
+        check_switch("expose_truth", self.expose_truth)
+        self._check_weights()
+        if isinstance(self.start, str) and self.start != "random":
+            raise MapError(f"start = {self.start!r} must be a pose (x, y, theta), 'random' or None")
+        if self.start is not None and not isinstance(self.start, str):
+            _check_pose(self.start)
+        if not isinstance(self.map, str | Floorplan) and (not isinstance(self.map, Sequence) or not len(self.map)):
+            raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file, or a list of them")
+
+    def _check_weights(self) -> None:
+        if self.weights is None:
+            return
+        if self.reward != "combined":
+            raise ConfigError(f"weights = {self.weights!r} are for reward='combined', not {self.reward!r}")
+        if not isinstance(self.weights, Mapping):
+            raise ConfigError(f"weights = {self.weights!r} must be numbers by name, of {', '.join(COMBINED_WEIGHTS)}")
+        for name, value in self.weights.items():
+            if name not in COMBINED_WEIGHTS:
+                raise ConfigError(f"unknown weight {name!r}{suggest(str(name), COMBINED_WEIGHTS)}")
+            check_range(f"weights.{name}", value, 0.0, 1e6)
+
+    @property
+    def combined_weights(self) -> dict[str, float]:
+        """All weights of the combined reward."""
+        return COMBINED_WEIGHTS | {name: float(value) for name, value in (self.weights or {}).items()}
+
+    @property
+    def maps(self) -> list[MapSpec]:
+        """The floor plans to draw from."""
+        return [self.map] if isinstance(self.map, str | Floorplan) else list(self.map)
+
+
+def _check_pose(start: Any) -> None:
+    if not isinstance(start, Sequence) or len(start) != 3 or not all(isinstance(v, int | float) for v in start):
+        raise MapError(f"start = {start!r} must be a pose (x, y, theta), 'random' or None")

@@ -1,0 +1,1 @@
+"""What is measured of an episode, a module a family."""

@@ -1,0 +1,200 @@
+"""From an occupancy map to the cost of being somewhere: costmap_2d's inflation layer, in metres.
+
+The robot is planned as a point: cells whose centre is nearer to an obstacle than ``lethal_radius`` are blocked, and
+outside of that the cost decays from ``1 + weight`` to 1, so that a shortest path keeps off the walls where it can.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Literal, get_args
+
+import numpy as np
+from numba import njit
+from numpy.typing import NDArray
+
+from lidarena.base.errors import ConfigError, suggest
+
+Decay = Literal["exponential", "linear"]
+
+_ESCAPE_BASE, _ESCAPE_SLOPE = 2.0, 20.0  # in units of Inflation.weight: any detour inside is worth a way out
+
+
+@dataclass(frozen=True)
+class Inflation:
+    """How far obstacles reach; lengths in metres.
+
+    Attributes:
+        lethal_radius: Cells with less clearance than this are blocked.
+        radius: From this clearance on a cell costs 1.
+        weight: Cost above 1 of a cell right at the lethal radius.
+        decay: ``"exponential"`` as costmap_2d, ``1 + weight * exp(-rate * (clearance - lethal_radius))``, or
+            ``"linear"`` from ``1 + weight`` at the lethal radius to 1 at ``radius``.
+        rate: The exponential's rate (1/m); costmap_2d calls it ``cost_scaling_factor``, 10 by default.
+        through_unknown: Whether unknown cells may be driven through. They never count as obstacles.
+        occupied_from: Occupancy (0 .. 100) from which on a cell is an obstacle.
+    """
+
+    lethal_radius: float = 0.18
+    radius: float = 0.55
+    weight: float = 5.0
+    decay: Decay = "exponential"
+    rate: float = 10.0
+    through_unknown: bool = False
+    occupied_from: int = 50
+
+    def __post_init__(self) -> None:
+        """Refuse what has no meaning."""
+        if not 0.0 <= self.lethal_radius <= self.radius < math.inf:
+            raise ConfigError(
+                f"inflation radii of {self.lethal_radius} (lethal) and {self.radius} m,"
+                " allowed is 0 <= lethal_radius <= radius"
+            )
+        if not (0.0 <= self.weight < math.inf and 0.0 < self.rate < math.inf):
+            raise ConfigError(
+                f"inflation weight {self.weight} and rate {self.rate}, allowed are finite numbers >= 0 and > 0"
+            )
+        if self.decay not in get_args(Decay):
+            raise ConfigError(f"unknown decay {self.decay!r}{suggest(str(self.decay), get_args(Decay))}")
+        if not 1 <= self.occupied_from <= 100:
+            raise ConfigError(f"occupied_from = {self.occupied_from}, allowed is 1 .. 100")
+
+
+@njit(cache=True, nogil=True)
+def _distance(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.float32]:
+    """Distance in cells of each cell of (rows, cols) to the nearest occupied one, at most ``reach`` + 1.
+
+    Exact: along the rows first, then over the columns the least sum of squares (whole numbers, so that the result is
+    the same to the bit everywhere, which OpenCV's transform is not when its number of threads changes).
+    """
+    rows, cols = occupancy.shape
+    one, most = np.float32(1.0), np.float32(reach + 1)
+    along = np.empty((rows, cols), np.float32)
+    for r in range(rows):
+        d = most
+        for c in range(cols):
+            d = np.float32(0.0) if occupancy[r, c] >= occupied_from else min(d + one, most)
+            along[r, c] = d
+        d = most
+        for c in range(cols - 1, -1, -1):
+            d = min(along[r, c], d + one)
+            along[r, c] = d
+        for c in range(cols):
+            along[r, c] *= along[r, c]
+    result = along.copy()
+    for r in range(rows):
+        for k in range(max(-reach, -r), min(reach, rows - 1 - r) + 1):
+            square = np.float32(k * k)
+            for c in range(cols):
+                result[r, c] = min(result[r, c], along[r + k, c] + square)
+        for c in range(cols):
+            result[r, c] = np.sqrt(result[r, c])
+    return result
+
+
+def clearance(
+    occupancy: NDArray[np.int8], resolution: float, occupied_from: int = 50, reach: float = 1.0
+) -> NDArray[np.float32]:
+    """Return each cell's distance to the nearest obstacle, as far as it matters.
+
+    Args:
+        occupancy: (rows, cols), -1 unknown, 0 free .. 100 occupied.
+        resolution: Side of a cell (m).
+        occupied_from: Occupancy from which on a cell is an obstacle.
+        reach: Distances up to this (m) are exact, larger ones are only known to be larger; the time grows with it.
+
+    Returns:
+        (rows, cols) metres from the centre of the cell to the border of the nearest occupied cell (Euclidean distance
+        between the centres less half a cell); 0 inside obstacles.
+    """
+    cells = math.ceil(reach / resolution)
+    distance = _distance(np.ascontiguousarray(occupancy, dtype=np.int8), occupied_from, cells)
+    result: NDArray[np.float32] = np.maximum((distance - np.float32(0.5)) * np.float32(resolution), np.float32(0.0))
+    return result
+
+
+@njit(cache=True, nogil=True)
+def _costs(
+    occupancy: NDArray[np.int8],
+    distance: NDArray[np.float32],
+    lethal_radius: float,
+    radius: float,
+    weight: float,
+    rate: float,
+    through_unknown: bool,
+    occupied_from: int,
+) -> NDArray[np.float64]:
+    """Costs of the cells (rows, cols); ``rate`` <= 0 stands for the linear decay."""
+    cost = np.ones(occupancy.shape)
+    slope = 1.0 / max(radius - lethal_radius, 1e-9)
+    for r in range(occupancy.shape[0]):
+        for c in range(occupancy.shape[1]):
+            beyond = distance[r, c] - lethal_radius
+            unknown = occupancy[r, c] < 0 and not through_unknown
+            if beyond < 0.0 or unknown or occupancy[r, c] >= occupied_from:
+                cost[r, c] = np.inf
+            elif distance[r, c] < radius:
+                cost[r, c] += weight * (math.exp(-rate * beyond) if rate > 0.0 else max(1.0 - slope * beyond, 0.0))
+    return cost
+
+
+def inflate(
+    occupancy: NDArray[np.int8],
+    resolution: float,
+    inflation: Inflation,
+    distance: NDArray[np.float32] | None = None,
+) -> NDArray[np.float64]:
+    """Return the cost of each cell for :func:`lidarena.planning.grid.grid_search.find_path`.
+
+    Args:
+        occupancy: (rows, cols), -1 unknown, 0 free .. 100 occupied.
+        resolution: Side of a cell (m).
+        inflation: The parameters.
+        distance: The map's :func:`clearance`, if it has been computed already.
+
+    Returns:
+        (rows, cols): inf where blocked, else between 1 and ``1 + inflation.weight``.
+    """
+    if distance is None:
+        distance = clearance(occupancy, resolution, inflation.occupied_from, inflation.radius + resolution)
+    cost: NDArray[np.float64] = _costs(
+        np.ascontiguousarray(occupancy, dtype=np.int8),
+        distance,
+        inflation.lethal_radius,
+        inflation.radius,
+        inflation.weight,
+        inflation.rate if inflation.decay == "exponential" else -1.0,
+        inflation.through_unknown,
+        inflation.occupied_from,
+    )
+    return cost
+
+
+def open_start(
+    cost: NDArray[np.float64],
+    occupancy: NDArray[np.int8],
+    distance: NDArray[np.float32],
+    cell: tuple[int, int],
+    reach: int,
+    inflation: Inflation,
+) -> None:
+    """Let a robot out that stands in the lethal zone (an error of the pose, an obstacle seen late), in place.
+
+    Nothing happens unless ``cell`` is blocked. Then the known cells around it that are merely too near to an obstacle
+    become passable at a cost that falls steeply as clearance rises, so that the way out leads away from the wall.
+
+    Args:
+        cost: (rows, cols) from :func:`inflate`; changed.
+        occupancy: (rows, cols) the map.
+        distance: (rows, cols) its :func:`clearance` (m).
+        cell: [row, column] of the robot.
+        reach: Half the side of the square that is opened, in cells.
+        inflation: The parameters ``cost`` was made with.
+    """
+    row, col = cell
+    if math.isfinite(cost[row, col]):
+        return
+    window = (slice(max(row - reach, 0), row + reach + 1), slice(max(col - reach, 0), col + reach + 1))
+    near, gap = cost[window], distance[window].astype(np.float64)
+    opened = np.isinf(near) & (occupancy[window] >= 0) & (occupancy[window] < inflation.occupied_from)
+    depth = np.maximum(inflation.lethal_radius - gap, 0.0) / max(inflation.lethal_radius, 1e-9)
+    near[opened] = 1.0 + inflation.weight * (_ESCAPE_BASE + _ESCAPE_SLOPE * depth[opened])

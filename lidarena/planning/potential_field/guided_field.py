@@ -1,0 +1,176 @@
+"""A potential field that is led by a global path: the future work of Yang et al., smooth and without traps.
+
+The goal of the walk is a lookahead point: the farthest point of an A* path that is in sight and not too far ahead.
+Obstacles repel as before. The heading turns by a limited angle a step, which is what smooths the path. The walk takes
+no step from which it would lose sight of every lookahead point, and goes straight to one where the field holds it back:
+since the lookahead point stays in sight on the way to it, the walk arrives.
+"""
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from lidarena.base.jit import leaf
+from lidarena.planning.potential_field.circle_grid import shortest_grid_path
+from lidarena.planning.potential_field.disc_clearance import segment_is_free
+from lidarena.planning.potential_field.field_descent import ARRIVED, OUT_OF_STEPS
+from lidarena.planning.potential_field.field_kernels import Field, force_at
+from lidarena.planning.potential_field.field_parameters import field_parameters
+from lidarena.planning.potential_field.field_scene import make_scene
+from lidarena.planning.potential_field.potential_field import PathResult
+from lidarena.planning.potential_field.regression_search import path_length, regression_search, shortened
+
+_AHEAD = 8.0
+"""A lookahead point is at most this far ahead along the path, in units of h_0."""
+_TURN = 0.1
+"""Most a heading turns in a step (rad)."""
+_WINDOW = 20
+_CLEARANCES = (1.0, 0.5, 0.25, 0.1, 0.02)
+"""The walk keeps the largest of these shares of h_0 with which the A* path has a way."""
+
+
+@leaf
+def _lookahead_point(
+    x: float,
+    y: float,
+    route: NDArray[np.float64],
+    first: int,
+    reach: int,
+    kept: NDArray[np.float64],
+    walls: NDArray[np.float64],
+    blocker: NDArray[np.int64],
+) -> int:
+    """The last point of ``route`` (R, 2) from ``first`` on, at most ``reach`` further, that is in sight; -1: none."""
+    for i in range(min(first + reach, route.shape[0] - 1), first - 1, -1):
+        if segment_is_free(x, y, route[i, 0], route[i, 1], kept, walls, blocker):
+            return i
+    return -1
+
+
+@leaf
+def _limited(heading: float, wanted: float, most: float) -> float:
+    """``heading`` turned towards ``wanted`` by ``most`` at most."""
+    turn = (wanted - heading + math.pi) % (2.0 * math.pi) - math.pi
+    return heading + min(max(turn, -most), most)
+
+
+@leaf
+def follow(
+    path: NDArray[np.float64],
+    route: NDArray[np.float64],
+    reach: int,
+    discs: NDArray[np.float64],
+    walls: NDArray[np.float64],
+    kept: NDArray[np.float64],
+    kept_walls: NDArray[np.float64],
+    field: Field,
+    gamma: float,
+    target: NDArray[np.float64],
+    blocker: NDArray[np.int64],
+) -> tuple[int, int]:
+    """Walk along a route.
+
+    Args:
+        path: (N + 1, 2) its first row is the start; the others are written.
+        route: (R, 2) points to be led by, close together.
+        reach: How many of them the lookahead point is ahead at most.
+        discs: (K, 3) x, y, radius of the obstacles, which repel (m).
+        walls: (4,) the room (m).
+        kept: (K, 3) the same discs grown by the clearance that the walk keeps.
+        kept_walls: (4,) likewise.
+        field: The potential.
+        gamma: Length of a step (m).
+        target: (2,) scratch for the lookahead_point.
+        blocker: (1,) scratch, 0.
+
+    Returns:
+        Index of the last row of ``path`` that was written, and how it ended.
+    """
+    ahead, straight = 0, 0
+    end = route.shape[0] - 1
+    heading = math.atan2(route[min(1, end), 1] - route[0, 1], route[min(1, end), 0] - route[0, 0])
+    for k in range(path.shape[0] - 1):
+        x, y = path[k, 0], path[k, 1]
+        if math.hypot(x - route[end, 0], y - route[end, 1]) <= gamma:
+            return k, ARRIVED
+        found = _lookahead_point(x, y, route, ahead, reach, kept, kept_walls, blocker)
+        ahead = max(ahead, found)
+        target[0], target[1] = route[ahead, 0], route[ahead, 1]
+        if k >= _WINDOW and math.hypot(x - path[k - _WINDOW, 0], y - path[k - _WINDOW, 1]) < 0.25 * _WINDOW * gamma:
+            straight = _WINDOW
+        step = gamma
+        fx, fy = force_at(x, y, target, discs, walls, field, route, 0)
+        turned = _limited(heading, math.atan2(fy, fx), _TURN)
+        nx, ny = x + gamma * math.cos(turned), y + gamma * math.sin(turned)
+        lost = straight > 0 or not segment_is_free(x, y, nx, ny, kept, kept_walls, blocker)
+        if lost or _lookahead_point(nx, ny, route, ahead, reach, kept, kept_walls, blocker) < 0:
+            turned = math.atan2(target[1] - y, target[0] - x)
+            step = min(gamma, math.hypot(target[0] - x, target[1] - y))
+            nx, ny = x + step * math.cos(turned), y + step * math.sin(turned)
+        straight = max(straight - 1, 0)
+        heading = turned
+        path[k + 1, 0], path[k + 1, 1] = nx, ny
+    return path.shape[0] - 1, OUT_OF_STEPS
+
+
+def _spaced(path: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
+    """The same polyline as points a ``spacing`` apart, its corners among them."""
+    at = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path, axis=0).T))])
+    wanted = np.union1d(at, np.arange(0.0, at[-1], spacing))
+    return np.column_stack([np.interp(wanted, at, path[:, 0]), np.interp(wanted, at, path[:, 1])])
+
+
+def plan_guided_path(
+    circles: ArrayLike,
+    start: ArrayLike,
+    goal: ArrayLike,
+    robot_radius: float = 0.0,
+    bounds: ArrayLike | None = None,
+    **overrides: Any,
+) -> PathResult:
+    """Plan a smooth path by a potential field that is led by A*'s path.
+
+    Args:
+        circles: (K, 3) x, y, radius (m); K = 0 gives a straight line.
+        start: x, y (m).
+        goal: x, y (m).
+        robot_radius: Radius of the robot (m).
+        bounds: x_min, y_min, x_max, y_max of the room (m); None: no walls.
+        **overrides: Attributes of :class:`FieldParameters` over its preset
+            ``robust``.
+
+    Returns:
+        The result; ``path`` is the smooth one, ``smoothed`` the corners that the regression search leaves of it.
+
+    Raises:
+        MapError: As :func:`lidarena.planning.potential_field.potential_field.plan_path`.
+        ConfigError: As there.
+    """
+    scene = make_scene(circles, start, goal, robot_radius, bounds)
+    parameters = field_parameters("robust", **overrides).fitted(scene.scale, overrides)
+    none = np.empty((0, 3))
+    for share in _CLEARANCES:
+        tried = parameters.tightened(share)
+        kept, kept_walls = scene.keeping(tried.h_0)
+        narrowed = scene.narrowed(kept, kept_walls)
+        route = shortest_grid_path(narrowed, tried.h_0, 2.0)
+        if len(route):
+            break
+    else:
+        alone = scene.start[None].copy()
+        return PathResult(False, False, alone, alone.copy(), 0, "A* finds no path on its grid", none, parameters)
+    route = shortened(regression_search(route, kept, kept_walls), kept, kept_walls)
+    points = _spaced(route, tried.gamma)
+    steps = min(parameters.max_steps, 4 * len(points) + 1000)
+    path = np.empty((steps + 1, 2))
+    path[0] = scene.start
+    arguments = (scene.discs, scene.walls, kept, kept_walls, tried.field(), float(tried.gamma))
+    reach = np.int64(_AHEAD * tried.h_0 / tried.gamma)
+    last, end = follow(path, points, reach, *arguments, np.empty(2), np.zeros(1, np.int64))
+    path = np.vstack([path[: last + 1], scene.goal]) if end == ARRIVED else path[: last + 1].copy()
+    smoothed = shortened(regression_search(path, kept, kept_walls), kept, kept_walls) if end == ARRIVED else path.copy()
+    way = f"the goal was reached in {last} steps along A*'s path of {path_length(route):.4g} m"
+    message = way if end == ARRIVED else f"the goal was not reached within {steps} steps (the limit)"
+    return PathResult(end == ARRIVED, False, path, smoothed, 0, message, none, tried)

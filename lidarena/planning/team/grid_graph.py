@@ -1,0 +1,208 @@
+"""Where a robot of a given radius can stand and go on a grid, and how far it is from everywhere to a goal."""
+
+import math
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.jit import kernel, leaf
+from lidarena.planning.team.moves import MOVES, footprints
+from lidarena.planning.team.open_list import pop, push
+
+STEP = np.int64(4096)
+"""What a time step costs, in the planners' units: a robot's cost is the number of its steps until it stays at its goal,
+waits included. Smaller units only choose between paths of equally many steps: a diagonal costs one unit more than a
+straight move, so that paths run straight."""
+
+UNREACHABLE = np.int64(2**30)
+_CACHED_GOALS = 4096
+_KEPT_WORKSPACES = 2
+
+
+@kernel
+def _neighbours(index: NDArray[np.int32], moves: NDArray[np.int64], connectivity: int) -> NDArray[np.int32]:
+    """Where each move leads (n, 9) from each place, -1 nowhere; ``index`` is padded. No diagonal cuts a corner."""
+    rows, cols = index.shape
+    count = 0
+    for r in range(rows):
+        for c in range(cols):
+            count = max(count, index[r, c] + 1)
+    table = np.full((count, 9), -1, np.int32)
+    for r in range(rows):
+        for c in range(cols):
+            here = index[r, c]
+            if here < 0:
+                continue
+            for m in range(connectivity + 1):
+                y, x = r + moves[m, 0], c + moves[m, 1]
+                if index[r, x] >= 0 and index[y, c] >= 0:
+                    table[here, m] = index[y, x]
+    return table
+
+
+@leaf
+def _flood_steps(
+    neighbours: NDArray[np.int32], goal: int, ahead: NDArray[np.int32], queue: NDArray[np.int32], step: int
+) -> None:
+    """Breadth-first from ``goal``; a place's predecessors are all final before it is taken from the queue."""
+    ahead[goal] = 0
+    queue[0] = goal
+    head, tail = 0, 1
+    while head < tail:
+        here = queue[head]
+        head += 1
+        straight = ahead[here] + step
+        for m in range(1, 9):
+            there = neighbours[here, m]
+            if there < 0:
+                continue
+            new = straight + (1 if m > 4 else 0)
+            if ahead[there] == 2**30:
+                queue[tail] = there
+                tail += 1
+            ahead[there] = min(ahead[there], new)
+
+
+@kernel
+def _flood_costs(
+    neighbours: NDArray[np.int32], goal: int, ahead: NDArray[np.int32], surcharge: NDArray[np.int32], step: int
+) -> None:
+    """Dijkstra backwards from ``goal`` where entering a place costs a surcharge."""
+    keys = np.empty(9 * len(ahead) + 1, np.int64)
+    items = np.empty(9 * len(ahead) + 1, np.int32)
+    ahead[goal] = 0
+    size = push(keys, items, np.int64(0), np.int64(0), goal)
+    while size > 0:
+        spent, here = keys[0], items[0]
+        size = pop(keys, items, size)
+        if spent > ahead[here]:
+            continue
+        for m in range(1, 9):
+            there = neighbours[here, m]
+            new = spent + step + (1 if m > 4 else 0) + surcharge[here]  # walked forwards, ``here`` is entered
+            if there >= 0 and new < ahead[there]:
+                ahead[there] = new
+                size = push(keys, items, size, new, there)
+
+
+class Workspace:
+    """Arrays of a size that is expensive to allocate, for one team at a time; see ``reservations`` and ``route``.
+
+    Args:
+        places: Number of places.
+        times: Steps up to which moves can be reserved.
+    """
+
+    def __init__(self, places: int, times: int) -> None:
+        self.times = times
+        self.table = np.zeros((places, times), np.uint16)
+        self.until = np.zeros(places, np.int32)
+        self.since = np.full((places, 9), UNREACHABLE, np.int32)
+        self.nodes = np.zeros((times * places, 3), np.int32)  # pages that no search touches cost nothing
+        room = 4 * times * places + 64
+        self.keys, self.items = np.empty(room, np.int64), np.empty(room, np.int32)
+        self.limits = np.array([2**31 - 1, 2**31 - 1, 0, 0], np.int64)
+
+
+class GridGraph:
+    """The places of a grid for robots of one radius; a place is the number of a cell in raster order.
+
+    A cell is a place if a disc on its centre touches no blocked cell and does not reach beyond the grid.
+
+    Args:
+        blocked: (rows, cols) bool.
+        connectivity: 4 or 8 neighbours.
+        radius: Of every robot [cells].
+
+    Attributes:
+        cells: (n, 2) [row, column] of the places.
+        index: (rows, cols) int32, a cell's place, -1 where the robot cannot stand.
+        neighbours: (n, 9) int32, the place to which each of ``MOVES`` leads, -1 nowhere.
+        padded: ``index`` with a margin of -1, flat, in rows of ``stride``; ``at`` (n,) int32 are the places'
+            positions in it.
+        begins: Where each move's entries begin in ``entries``, see ``moves.footprints``.
+        entries: The footprints.
+        apart: Least distance of two robots [cells].
+    """
+
+    def __init__(self, blocked: NDArray[np.bool_], connectivity: int, radius: float) -> None:
+        self.connectivity, self.radius, self.apart = connectivity, radius, 2.0 * radius
+        standing = ~_near_blocked(blocked, radius)
+        self.cells = np.argwhere(standing)
+        self.index: NDArray[np.int32] = np.full(blocked.shape, -1, np.int32)
+        self.index[standing] = np.arange(len(self.cells), dtype=np.int32)
+        margin = math.ceil(self.apart) + 3
+        padded = np.pad(self.index, margin, constant_values=-1)
+        self.neighbours: NDArray[np.int32] = _neighbours(np.pad(self.index, 1, constant_values=-1), MOVES, connectivity)
+        self.stride = padded.shape[1]
+        self.begins, self.entries = footprints(self.apart, connectivity, self.stride)
+        self.at = ((self.cells[:, 0] + margin) * self.stride + self.cells[:, 1] + margin).astype(np.int32)
+        self.padded = padded.ravel()
+        self._ahead: dict[int, NDArray[np.int32]] = {}
+        self._spare: list[Workspace] = []
+
+    def __len__(self) -> int:
+        """Number of places."""
+        return len(self.cells)
+
+    def place(self, cell: NDArray[np.int64]) -> int:
+        """The place of a cell [row, column]; -1 where the robot cannot stand."""
+        return int(self.index[cell[0], cell[1]])
+
+    def borrow(self, times: int) -> Workspace:
+        """A workspace with empty tables for at least ``times`` steps, which nobody else has."""
+        try:
+            spare = self._spare.pop()
+        except IndexError:
+            return Workspace(len(self), times)
+        return spare if spare.times >= times else Workspace(len(self), times)
+
+    def give_back(self, workspace: Workspace) -> None:
+        """Keep a workspace, its tables empty again, for the next team."""
+        if len(self._spare) < _KEPT_WORKSPACES:
+            self._spare.append(workspace)
+
+    def ahead(self, goal: int) -> NDArray[np.int32]:
+        """What the shortest way from every place to ``goal`` costs (n,), in units; ``UNREACHABLE`` without a way.
+
+        The exact heuristic for space-time search: kept for the next call with the same goal.
+        """
+        if goal not in self._ahead:
+            if len(self._ahead) >= _CACHED_GOALS:
+                self._ahead.clear()
+            costs = np.full(len(self), UNREACHABLE, np.int32)
+            _flood_steps(self.neighbours, np.int64(goal), costs, np.empty(len(self), np.int32), STEP)
+            self._ahead[goal] = costs
+        return self._ahead[goal]
+
+    def ahead_with(self, goal: int, surcharge: NDArray[np.int32]) -> NDArray[np.int32]:
+        """As ``ahead`` where entering a place, or waiting in it, costs ``surcharge`` (n,) units more; not kept."""
+        costs = np.full(len(self), UNREACHABLE, np.int32)
+        _flood_costs(self.neighbours, np.int64(goal), costs, surcharge, STEP)
+        return costs
+
+
+def grid_graph_of(blocked: NDArray[np.bool_], connectivity: int, radius: float) -> GridGraph:
+    """The graph of a grid, kept for the next call with an equal grid."""
+    return _cached(np.packbits(blocked).tobytes(), blocked.shape, connectivity, radius)
+
+
+@lru_cache(maxsize=16)
+def _cached(bits: bytes, shape: tuple[int, int], connectivity: int, radius: float) -> GridGraph:
+    count = shape[0] * shape[1]
+    blocked = np.unpackbits(np.frombuffer(bits, np.uint8), count=count).reshape(shape).astype(np.bool_)
+    return GridGraph(blocked, connectivity, radius)
+
+
+def _near_blocked(blocked: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:
+    """Cells whose centre is nearer than ``radius`` to a blocked cell (a unit square) or to the grid's border."""
+    reach = math.ceil(radius + 0.5)
+    padded = np.pad(blocked, reach, constant_values=True)
+    near = blocked.copy()
+    rows, cols = blocked.shape
+    for dr in range(-reach, reach + 1):
+        for dc in range(-reach, reach + 1):
+            if math.hypot(max(abs(dr) - 0.5, 0.0), max(abs(dc) - 0.5, 0.0)) < radius - 1e-9:
+                near |= padded[reach + dr : reach + dr + rows, reach + dc : reach + dc + cols]
+    return near

@@ -1,0 +1,1 @@
+"""Recorded logs: reading them, replaying them through the filter, and measuring what came out."""

@@ -1,0 +1,103 @@
+"""The folder of a replay: map, trajectory, picture and results, all of them at once or none."""
+
+import io
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.files import write_bytes, write_folder, write_text
+from lidarena.slam.logs.carmen import LogError, RecordedLog
+from lidarena.slam.logs.relations import RelationErrors
+from lidarena.slam.logs.replay import Replay
+from lidarena.slam.logs.replay_picture import draw_replay
+from lidarena.slam.logs.trajectory import save_tum
+from lidarena.world.map_server import save_map
+
+FILES = ("map.yaml", "map.pgm", "trajectory.tum", "picture.png", "results.json")
+
+
+def check_folder(folder: str | os.PathLike[str]) -> None:
+    """Refuse, before the work begins, a folder that holds other people's files.
+
+    Raises:
+        LogError: It is a file, or a folder with anything but an earlier replay in it.
+        OSError: It cannot be looked into.
+    """
+    place = Path(folder)
+    if place.exists() and not place.is_dir():
+        raise LogError(f"{str(place)!r} is a file; a folder is needed for the results")
+    if place.is_dir() and (others := sorted(set(os.listdir(place)) - set(FILES))):
+        raise LogError(
+            f"folder {str(place)!r} holds {others[0]!r}; an empty or new one, or an earlier replay's is needed"
+        )
+
+
+def save_replay(
+    folder: str | os.PathLike[str], log: RecordedLog, result: Replay, errors: RelationErrors | None = None
+) -> Path | None:
+    """Write ``map.yaml`` and ``map.pgm``, ``trajectory.tum``, ``picture.png`` and ``results.json``.
+
+    The folder appears whole. An earlier replay's is kept: it moves to ``folder.1``, ``folder.2``, …
+
+    Args:
+        folder: Where to.
+        log: The log.
+        result: What was made of it.
+        errors: Against relations, if there are any.
+
+    Returns:
+        Where the earlier replay is now, None if there was none.
+
+    Raises:
+        LogError: The folder holds something else.
+        OSError: The disk is full or the place is not writable; what was there is left as it was.
+    """
+    check_folder(folder)
+    place = Path(os.path.abspath(folder))  # "." has no name of its own
+    picture = io.BytesIO()
+    draw_replay(log, result).savefig(picture, format="png")
+
+    def fill(there: Path) -> None:
+        save_map(there / "map.yaml", result.map.occupancy, result.map.resolution, result.map.origin)
+        save_tum(there / "trajectory.tum", result.trajectory)
+        write_bytes(there / "picture.png", picture.getvalue())
+        write_text(there / "results.json", json.dumps(results(result, errors), indent=2) + "\n")
+
+    whole = place.with_name(f".{place.name}.{os.getpid()}.new")
+    write_folder(whole, fill)
+    earlier = _set_aside(place)
+    os.replace(whole, place)
+    return earlier
+
+
+def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, Any]:
+    """What ``results.json`` holds; the two errors are None without relations."""
+    return {
+        "translation_m": _moments(errors.translation) if errors else None,
+        "rotation_deg": _moments(np.degrees(errors.rotation)) if errors else None,
+        "relations": len(errors.translation) if errors else 0,
+        "scan_updates": len(result.readings),
+        "updates_per_second": round(result.updates_per_second, 1),
+    }
+
+
+def _moments(values: NDArray[np.float64]) -> dict[str, float]:
+    return {"mean": float(values.mean()), "std": float(values.std())}
+
+
+def _set_aside(place: Path) -> Path | None:
+    """Move an earlier folder to the next free number; an empty one is just removed."""
+    if not place.exists():
+        return None
+    if not any(place.iterdir()):
+        place.rmdir()
+        return None
+    number = 1
+    while (earlier := place.with_name(f"{place.name}.{number}")).exists():
+        number += 1
+    os.replace(place, earlier)
+    return earlier

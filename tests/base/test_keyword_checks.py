@@ -1,0 +1,61 @@
+import math
+from typing import Any
+
+import numpy as np
+import pytest
+
+from lidarena.base.errors import ConfigError
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch
+from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv
+
+
+def test_what_is_allowed_passes() -> None:
+    check_names("a world", {"speed": 1, "beams": 3}, ["beams", "speed"])
+    check_choice("mode", None, (None, "fast"))
+    check_choice("mode", "fast", (None, "fast"))
+    check_range("speed", 1, 0.0, 1.0)
+    check_range("beams", 4, 4, 9, whole=True)
+    check_switch("known", True)
+
+
+def test_an_unknown_keyword_is_answered_with_the_nearest() -> None:
+    with pytest.raises(
+        ConfigError, match=r"unknown keyword 'sped' of a world; did you mean 'speed'\? Allowed: beams, speed"
+    ):
+        check_names("a world", {"sped": 1}, ["beams", "speed"])
+
+
+def test_an_unknown_choice_is_answered_with_the_nearest() -> None:
+    with pytest.raises(ConfigError, match="mode = 'fats' is not known; did you mean 'fast'"):
+        check_choice("mode", "fats", (None, "fast", "slow"))
+
+
+@pytest.mark.parametrize("value", [-0.1, 1.1, math.nan, math.inf, "1", None, True, [1]])
+def test_a_number_out_of_range_is_refused_with_the_range(value: Any) -> None:
+    with pytest.raises(ConfigError, match=r"speed = .* is out of range; a number from 0 to 1 is allowed"):
+        check_range("speed", value, 0.0, 1.0)
+
+
+def test_a_fraction_is_no_whole_number() -> None:
+    with pytest.raises(ConfigError, match=r"beams = 4\.5 must be a whole number"):
+        check_range("beams", 4.5, 1, 9, whole=True)
+
+
+@pytest.mark.parametrize("value", [0, 1, "yes", None])
+def test_a_switch_is_true_or_false(value: Any) -> None:
+    with pytest.raises(ConfigError, match=r"known = .* must be true or false"):
+        check_switch("known", value)
+
+
+@pytest.mark.parametrize("make", [ExplorationEnv, ArenaEnv, CorridorCentralEnv])
+def test_numpys_numbers_are_numbers(make: Any) -> None:
+    env = make(max_episode_steps=np.int64(3), lidar_noise=np.float32(0.0))
+    env.reset(seed=0)
+    steps = [env.step(env.action_space.sample())[2:4] for _ in range(3)]
+    assert steps[-1][1] and not steps[0][1]
+
+
+def test_numpys_numbers_are_numbers_in_dictionaries_too() -> None:
+    env = ExplorationEnv(map="env1", reward="combined", weights={"path": np.float32(2), "collision": np.int64(3)})
+    env.reset(seed=0)
+    assert env.step(0)[4]["reward_terms"]["path"] < 0.0

@@ -1,0 +1,250 @@
+import gymnasium as gym
+import numpy as np
+import pytest
+
+import lidarena  # noqa: F401
+from lidarena.base.errors import ConfigError
+from lidarena.baselines import make
+from tests.baselines.exploration.fake_exploration import FakeExploration, drawn, explore
+
+ROOMS = drawn(
+    "#################",
+    "#    #     #    #",
+    "#          #    #",
+    "#    #          #",
+    "#    #     #    #",
+    "### #### #### ###",
+    "#               #",
+    "#               #",
+    "##### ##### #####",
+    "#    #     #    #",
+    "#    #     #    #",
+    "#    #     #    #",
+    "#################",
+    side=9,
+)
+CORRIDORS = drawn(  # 0.8 m wide, with dead ends
+    "###########",
+    "#         #",
+    "# ### ### #",
+    "# #     # #",
+    "# ### # # #",
+    "#     #   #",
+    "##### #####",
+    "#   # #   #",
+    "# #     # #",
+    "###########",
+    side=16,
+)
+U_SHAPES = drawn(
+    "##############",
+    "#            #",
+    "#  ########  #",
+    "#  #      #  #",
+    "#  #  ##  #  #",
+    "#  #  ##  #  #",
+    "#     ##     #",
+    "#  ########  #",
+    "#            #",
+    "##############",
+    side=16,
+)
+PILLARS = drawn(
+    "################",
+    "#              #",
+    "#  #   #   #   #",
+    "#              #",
+    "#    #   #   # #",
+    "#              #",
+    "#  #   #   #   #",
+    "#              #",
+    "################",
+    side=8,
+)
+WORLDS = {
+    "rooms": (ROOMS, (1.0, 1.0, 0.0)),
+    "corridors": (CORRIDORS, (1.2, 6.8, 0.0)),
+    "u": (U_SHAPES, (3.6, 4.1, 1.0)),
+    "pillars": (PILLARS, (0.8, 0.8, 0.5)),
+}
+
+
+def assert_explored(env, policy, info, completeness=0.98):
+    assert not info["collision"]
+    assert env.least > 0.12
+    assert policy.finished
+    assert info["completeness"] >= completeness
+
+
+@pytest.mark.parametrize("name", WORLDS)
+def test_explores_everything_without_touching(name):
+    solid, start = WORLDS[name]
+    env = FakeExploration(solid, start)
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 4000)
+    assert_explored(env, policy, info)
+
+
+@pytest.mark.parametrize("options", [{"action": "continuous"}, {"observation": "map"}, {"pose_error": 0.03}], ids=str)
+@pytest.mark.parametrize("name", ["rooms", "corridors"])
+def test_explores_with_other_actions_observations_and_a_swaying_pose(name, options):
+    solid, start = WORLDS[name]
+    env = FakeExploration(solid, start, **options)
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 4000)
+    assert_explored(env, policy, info)
+
+
+@pytest.mark.parametrize("heading", [-2.0, 0.0, 1.5, 3.0])
+def test_explores_from_any_heading(heading):
+    env = FakeExploration(PILLARS, (2.7, 2.0, heading))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 3000)
+    assert_explored(env, policy, info)
+
+
+def test_as_explore_lite_it_still_explores():
+    env = FakeExploration(ROOMS, (1.0, 1.0, 0.0))
+    policy = make("frontier", env, last_frontier_size=0.5, persistence=0.0)
+    info, _ = explore(env, policy, 5000)
+    assert_explored(env, policy, info, 0.95)
+
+
+def test_is_deterministic():
+    traces = []
+    for _ in range(2):
+        env = FakeExploration(U_SHAPES, (3.6, 4.1, 1.0))
+        explore(env, make("frontier", env), 300)
+        traces.append(np.array(env.trace))
+    np.testing.assert_array_equal(*traces)
+
+
+def test_reset_forgets_the_last_episode():
+    env = FakeExploration(PILLARS, (0.8, 0.8, 0.5))
+    policy = make("frontier", env)
+    explore(env, policy, 3000)
+    first, steps = np.array(env.trace), env.steps
+    assert policy.finished
+    policy.reset(seed=1)
+    assert not policy.finished
+    explore(env, policy, 3000)
+    assert env.steps == steps
+    np.testing.assert_array_equal(np.array(env.trace), first)
+
+
+def test_turns_where_it_is_once_it_has_finished():
+    env = FakeExploration(drawn("####", "#  #", "#  #", "####", side=20), (1.5, 1.5, 0.0))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 200)
+    assert policy.finished
+    here = env.pose.copy()
+    for _ in range(150):
+        action = policy.act(env._observation(), info)
+        assert action == 1
+        *_, info = env.step(action)
+    assert policy.finished and not info["collision"]
+    assert np.hypot(*(env.pose - here)[:2]) < 0.4
+
+
+def test_waits_for_a_map():
+    env = FakeExploration(PILLARS, (0.8, 0.8, 0.5))
+    policy = make("frontier", env)
+    observation, info = env.reset()
+    policy.reset()
+    nothing = dict(info, map=np.full_like(info["map"], -1))
+    for _ in range(30):
+        assert env.action_space.contains(policy.act(observation, nothing))
+    assert not policy.finished
+    assert policy.act(observation, info) in (0, 1, 2)
+
+
+def test_does_not_drive_against_what_only_the_beams_see():
+    env = FakeExploration(PILLARS, (1.5, 1.2, 0.0))
+    policy = make("frontier", env)
+    observation, info = env.reset()
+    policy.reset()
+    for _ in range(60):
+        action = policy.act(observation, info)
+        if action == 0:
+            break
+        observation, *_, info = env.step(action)
+    assert action == 0
+    policy.reset()
+    observation, info = env._observation(), env._info(False)
+    observation[0] = 0.2 / 3.5  # the map shows nothing there
+    assert policy.act(observation, info) != 0
+
+
+def test_reads_nothing_but_map_pose_and_beams():
+    env = FakeExploration(PILLARS, (0.8, 0.8, 0.5))
+    policy = make("frontier", env)
+    observation, info = env.reset()
+    policy.reset()
+    for _ in range(30):
+        poor = {key: info[key] for key in ("map", "resolution", "origin", "pose")}
+        observation, *_, info = env.step(policy.act(observation, poor))
+
+
+def test_does_not_enter_a_corridor_in_which_it_could_not_turn_round():
+    """0.45 m are wide enough for driving, but a robot that cannot reverse must not find a dead end there."""
+    solid = drawn("############", "#   ########", "#          #", "#   ########", "############", side=9)
+    env = FakeExploration(solid, (1.0, 1.1, 3.0))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 1000)
+    assert policy.finished and not info["collision"]
+    assert env.least > 0.12
+    assert np.array(env.trace)[:, 0].max() < 2.4
+
+
+def test_gives_up_what_it_cannot_reach():
+    """A room that is only seen through a slit: its frontier stays, and the policy ends all the same."""
+    solid = drawn("##########", "#    #   #", "#    #   #", "#    #   #", "##########", side=16)
+    solid[30:34, 80:96] = False  # a slit of 0.2 m
+    env = FakeExploration(solid, (1.6, 2.0, 0.0))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 2000)
+    assert policy.finished and not info["collision"]
+    assert policy._blacklist.given_up
+
+
+def test_escapes_from_a_start_too_near_to_a_wall():
+    env = FakeExploration(drawn("####", "#  #", "#  #", "####", side=30), (1.8, 1.66, 0.4))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 400)
+    assert not info["collision"]
+    assert env.clearance[env._cell(*env.pose[:2])] > 0.14
+
+
+@pytest.mark.parametrize(
+    "option",
+    [
+        "min_frontier_size",
+        "last_frontier_size",
+        "potential_scale",
+        "gain_scale",
+        "planner_period",
+        "progress_timeout",
+        "arrival_patience",
+        "persistence",
+        "last_pass_timeout",
+    ],
+)
+@pytest.mark.parametrize("value", [-1.0, float("nan"), float("inf")])
+def test_options_out_of_range_are_refused(option, value):
+    with pytest.raises(ConfigError, match=option):
+        make("frontier", FakeExploration(PILLARS, (0.8, 0.8, 0.5)), **{option: value})
+
+
+def test_frontier_explores_with_any_observation() -> None:
+    known = []
+    for observation in ("da_slam", "sectors", "compass", "map"):
+        env = gym.make("lidarena/Env2-v0", observation=observation, slam="truth", max_episode_steps=300)
+        policy = make("frontier", env)
+        seen, info = env.reset(seed=0)
+        policy.reset(seed=0)
+        for _ in range(200):
+            seen, _, terminated, _, info = env.step(policy.act(seen, info))
+            assert not terminated
+        known.append(info["completeness"])
+    assert min(known) > 0.4
+    assert known[1] == known[2], "the compass shows the same hits as the sectors"

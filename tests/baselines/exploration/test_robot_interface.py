@@ -1,0 +1,92 @@
+import math
+
+import gymnasium as gym
+import numpy as np
+import pytest
+
+from lidarena.base.errors import ConfigError
+from lidarena.baselines.exploration.robot_interface import Robot
+
+
+class Env:
+    spec = None
+
+    def __init__(self, space, **attributes):
+        self.action_space = space
+        for name, value in attributes.items():
+            setattr(self, name, value)
+
+
+DISCRETE = gym.spaces.Discrete(3)
+BOX = gym.spaces.Box(-1.0, 1.0, (2,), np.float32)
+
+
+def beams(front=1.0, left45=1.0, left=1.0, right45=1.0, right=1.0):
+    return np.array([front, left45, left, right45, right, 0.0, 0.0], np.float32)
+
+
+def test_discrete_actions_are_the_commands():
+    robot = Robot(Env(DISCRETE))
+    np.testing.assert_allclose(robot.commands.velocities, [[0.5, 0.0], [0.05, 0.3], [0.05, -0.3]])
+    assert [robot.action(k) for k in range(3)] == [0, 1, 2]
+
+
+def test_continuous_actions_stand_for_the_velocities():
+    robot = Robot(Env(BOX))
+    for k, (v, w) in enumerate(robot.commands.velocities):
+        action = robot.action(k)
+        assert BOX.contains(action)
+        assert (0.25 * (action[0] + 1.0), action[1]) == pytest.approx((v, w), abs=1e-6)
+
+
+def test_period_is_the_environments():
+    spec = gym.envs.registration.EnvSpec("lidarena/Env1-v0", kwargs={"decision_period": 0.1})
+    assert Robot(Env(DISCRETE)).period == 0.2
+    assert Robot(Env(DISCRETE, spec=spec)).period == 0.1
+    assert Robot(Env(DISCRETE, decision_period=0.5)).period == 0.5
+    np.testing.assert_allclose(Robot(Env(DISCRETE, spec=spec)).commands.moves[0], [0.05, 0.0, 0.0])
+
+
+@pytest.mark.parametrize(
+    "space", [gym.spaces.Discrete(4), gym.spaces.Box(-1, 1, (3,)), gym.spaces.MultiDiscrete([3, 3])]
+)
+def test_other_action_spaces_are_refused(space):
+    with pytest.raises(ConfigError, match=r"Discrete\(3\) and a Box"):
+        Robot(Env(space))
+
+
+@pytest.mark.parametrize(
+    ("observation", "touching"),
+    [
+        (beams(), []),
+        (beams(front=0.26 / 3.5), []),
+        (beams(front=0.23 / 3.5), [0]),
+        (beams(front=0.15 / 3.5), [0, 1, 2]),
+        (beams(left45=0.20 / 3.5), [0]),
+        (beams(left=0.13 / 3.5, right=0.13 / 3.5), []),  # on an arc it drives past what is beside it
+        (beams(left=0.2 / 3.5, right=0.2 / 3.5), []),
+    ],
+)
+def test_beams_tell_which_commands_would_touch(observation, touching):
+    robot = Robot(Env(DISCRETE))
+    assert [k for k in range(3) if robot.would_touch(k, observation)] == touching
+
+
+def test_scans_are_understood_as_well():
+    robot = Robot(Env(DISCRETE))
+    scan = np.ones(360, np.float32)
+    assert not robot.would_touch(0, {"scan": scan})
+    scan[350] = 0.2 / 3.5
+    assert robot.would_touch(0, {"scan": scan})
+    scan[350], scan[180] = 1.0, 0.13 / 3.5
+    assert not robot.would_touch(0, {"scan": scan})  # it drives away from what is behind
+
+
+def test_hits_are_where_the_beams_end() -> None:
+    observation = np.array([0.1, 1.0, 0.05, 0.5, 0.0, 0.0, 0.0], np.float32)  # over 3.5 m; the last two are no beams
+    hits = Robot.hits(observation, np.array([1.0, 2.0, math.pi / 2]), reach=0.6)
+    assert hits == pytest.approx(np.array([[1.0, 2.35], [1.0 - 0.175, 2.0]]), abs=1e-6)
+    scan = {"scan": np.full(4, 0.1)}
+    assert Robot.hits(scan, np.zeros(3), reach=0.6) == pytest.approx(
+        np.array([[0.35, 0.0], [0.0, 0.35], [-0.35, 0.0], [0.0, -0.35]]), abs=1e-9
+    )
