@@ -8,14 +8,12 @@ import importlib
 from types import ModuleType
 
 from lidarena import baselines
-from lidarena.agents.exploration.goal_choice_env import register_goal_choice
 from lidarena.envs import register_all
 
 __all__ = ["agents", "baselines", "evaluation"]
 __version__ = "0.1.0"
 
 register_all()
-register_goal_choice()
 
 
 def __getattr__(name: str) -> ModuleType:

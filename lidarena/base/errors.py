@@ -1,4 +1,4 @@
-"""Refusals: bad input is turned away at the border with one sentence (rule 3 of the house)."""
+"""Errors: bad input is turned away at the border with one sentence (rule 3 of the house)."""
 
 from collections.abc import Iterable
 from difflib import get_close_matches
@@ -21,6 +21,10 @@ class ActionError(LidarenaError):
 
 class ConfigError(LidarenaError):
     """A configuration with an unknown key or a value out of range."""
+
+
+class KeywordError(ConfigError, TypeError):
+    """A keyword that there is not: a ``TypeError`` too, as programs expect that probe what a function takes."""
 
 
 class PolicyFileError(LidarenaError):

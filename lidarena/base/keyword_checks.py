@@ -2,24 +2,26 @@
 
 import math
 import os
-from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import fields
+from inspect import Parameter, Signature, signature
+from typing import Any, TypeVar, get_type_hints
 
 import numpy as np
 
-from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.errors import ConfigError, KeywordError, suggest
 
 
 def check_names(what: str, keywords: Mapping[str, Any], allowed: Iterable[str]) -> None:
     """Refuse a keyword that does not exist.
 
     Raises:
-        ConfigError: With the nearest right one.
+        KeywordError: With the nearest right one.
     """
     names = list(allowed)
     for name in keywords:
         if name not in names:
-            raise ConfigError(f"unknown keyword {name!r} of {what}{suggest(name, names)}")
+            raise KeywordError(f"{what} got an unexpected keyword argument {name!r}{suggest(name, names)}")
 
 
 def plain(keywords: Mapping[str, Any]) -> dict[str, Any]:
@@ -62,6 +64,16 @@ def check_range(name: str, value: Any, low: float, high: float, whole: bool = Fa
         raise ConfigError(f"{name} = {value!r} must be a whole number")
 
 
+def check_step_limit(value: Any) -> None:
+    """Refuse what is neither a number of steps nor -1, which means never.
+
+    Raises:
+        ConfigError: It names what is allowed.
+    """
+    if isinstance(value, bool) or not isinstance(value, int) or (value != -1 and not 1 <= value <= 10**9):
+        raise ConfigError(f"max_episode_steps = {value!r} must be a whole number from 1 to 1e+09, or -1 for never")
+
+
 def check_switch(name: str, value: Any) -> None:
     """Refuse what is neither True nor False.
 
@@ -70,3 +82,27 @@ def check_switch(name: str, value: Any) -> None:
     """
     if not isinstance(value, bool):
         raise ConfigError(f"{name} = {value!r} must be true or false")
+
+
+Function = TypeVar("Function", bound=Callable[..., Any])
+
+
+def takes_keywords_of(options: type[Any]) -> Callable[[Function], Function]:
+    """Return a decorator that shows a dataclass's fields as the keywords of a function that ends in ``**keywords``.
+
+    Type checkers read them from the ``TypedDict`` in the annotation; an interactive session reads the signature.
+    """
+    hints = get_type_hints(options)
+    shown = [
+        Parameter(field.name, Parameter.KEYWORD_ONLY, default=field.default, annotation=hints[field.name])
+        for field in fields(options)
+    ]
+
+    def decorate(function: Function) -> Function:
+        own = list(signature(function).parameters.values())[:-1]
+        names = {parameter.name for parameter in own}
+        keywords = [parameter for parameter in shown if parameter.name not in names]
+        function.__signature__ = Signature([*own, *keywords])  # type: ignore[attr-defined]
+        return function
+
+    return decorate

@@ -3,18 +3,18 @@
 import inspect
 from collections.abc import Callable
 from dataclasses import dataclass
+from importlib import import_module
+from importlib.metadata import entry_points
 from typing import Any, TypeVar
 
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.baselines.policy import Policy
+from lidarena.envs.registration import families, family_of
 
 Made = TypeVar("Made", bound=Callable[..., Policy])
 
-_FAMILY_OF_ID = {
-    "Env": "exploration",
-    "Exploration": "exploration",
-    "Arena": "arena",
-}  # begins of ids, after "lidarena/"
+ENTRY_POINTS = "lidarena.baselines"
+"""Group under which an installed package tells of its baselines: a module that registers them, or a policy's maker."""
 
 
 @dataclass(frozen=True)
@@ -24,6 +24,7 @@ class _Entry:
 
 
 _entries: dict[str, _Entry] = {}
+_loaded: set[str] = set()
 
 
 def register(name: str, family: str | None = None) -> Callable[[Made], Made]:
@@ -51,7 +52,22 @@ def register(name: str, family: str | None = None) -> Callable[[Made], Made]:
 
 def names() -> list[str]:
     """Return the names of all baselines, sorted."""
+    _load()
     return sorted(_entries)
+
+
+def _load() -> None:
+    """Import what registers baselines: the families' modules, once each, and the entry points of other packages."""
+    for family in families():
+        if family.baselines is not None and family.baselines not in _loaded:
+            import_module(family.baselines)
+            _loaded.add(family.baselines)
+    if ENTRY_POINTS not in _loaded:
+        _loaded.add(ENTRY_POINTS)
+        for point in entry_points(group=ENTRY_POINTS):
+            found = point.load()
+            if callable(found) and point.name not in _entries:
+                register(point.name, getattr(found, "family", None))(found)
 
 
 def make(name: str, env: Any, **options: Any) -> Policy:
@@ -68,8 +84,9 @@ def make(name: str, env: Any, **options: Any) -> Policy:
     Raises:
         ConfigError: for an unknown name or option, an option out of range, or an environment of another family.
     """
-    if name not in _entries:
-        raise ConfigError(f"unknown baseline {name!r}{suggest(name, names())}")
+    known = names()
+    if name not in known:
+        raise ConfigError(f"unknown baseline {name!r}{suggest(name, known)}")
     entry = _entries[name]
     if entry.family is not None and family_of(env) != entry.family:
         raise ConfigError(f"baseline {name!r} drives {entry.family} environments only, not {_describe(env)}")
@@ -78,22 +95,9 @@ def make(name: str, env: Any, **options: Any) -> Policy:
     ]
     for key in options:
         if key not in allowed:
-            known = suggest(key, allowed) if allowed else "; it has no options"
-            raise ConfigError(f"baseline {name!r} has no option {key!r}{known}")
+            hint = suggest(key, allowed) if allowed else "; it has no options"
+            raise ConfigError(f"baseline {name!r} has no option {key!r}{hint}")
     return entry.make(env, **options)
-
-
-def family_of(env: Any) -> str | None:
-    """Return an environment's family: its attribute ``family``, else what its id says, else None."""
-    inner = getattr(env, "unwrapped", env)
-    family = getattr(inner, "family", None)
-    if family is not None:
-        return str(family)
-    spec = getattr(env, "spec", None)
-    room, _, word = spec.id.partition("/") if spec is not None else ("", "", "")
-    if room.split(":")[-1] != "lidarena":
-        return None
-    return _FAMILY_OF_ID.get(word.partition("-")[0].rstrip("0123456789"))
 
 
 def _describe(env: Any) -> str:

@@ -1,9 +1,9 @@
 """The environment families as Gymnasium environments, and their registry."""
 
-from lidarena.envs.arena.env import ArenaEnv, BatchedArena
-from lidarena.envs.corridor.central_env import BatchedCorridor, CorridorCentralEnv
-from lidarena.envs.exploration.env import BatchedExploration, ExplorationEnv
-from lidarena.envs.registration import register_all
+from lidarena.envs.arena import ArenaEnv, BatchedArena
+from lidarena.envs.corridor import BatchedCorridor, CorridorCentralEnv
+from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
+from lidarena.envs.registration import Family, Registration, register_all, register_family
 from lidarena.envs.worker_threads import set_num_threads
 
 __all__ = [
@@ -13,6 +13,9 @@ __all__ = [
     "BatchedExploration",
     "CorridorCentralEnv",
     "ExplorationEnv",
+    "Family",
+    "Registration",
     "register_all",
+    "register_family",
     "set_num_threads",
 ]

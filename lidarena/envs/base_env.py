@@ -1,6 +1,5 @@
 """What every family's single environment has in common: a batch of one world."""
 
-from abc import abstractmethod
 from typing import Any
 
 import gymnasium as gym
@@ -8,48 +7,50 @@ import numpy as np
 from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
-from lidarena.envs.infos import Info
+from lidarena.base.errors import ConfigError
+from lidarena.envs.episodes import Episodes
+from lidarena.envs.infos import Info, of_world, row_of
+from lidarena.envs.seeds import checked_seed
 
 
 class SingleWorld(gym.Env[Any, Any]):
     """One world, whose episodes end when they end: nothing begins before ``reset``.
 
     Args:
-        observation_space: Of the world.
-        action_space: Of the world.
-        render_mode: One of the class's, or None.
+        episodes: A batch of one world.
+
+    Attributes:
+        family: Name of the family, under which it is registered.
+        episodes: That batch.
     """
 
-    def __init__(
-        self, observation_space: gym.Space[Any], action_space: gym.Space[Any], render_mode: str | None
-    ) -> None:
-        self.observation_space, self.action_space, self.render_mode = observation_space, action_space, render_mode
+    family: str
+
+    def __init__(self, episodes: Episodes) -> None:
+        self.episodes: Any = episodes
+        self.observation_space = episodes.single_observation_space
+        self.action_space = episodes.single_action_space
+        self.render_mode = episodes.options.render_mode
         self._running = self._begun = False
 
-    @abstractmethod
-    def _begin(self, seed: int | None) -> None:
-        """Begin an episode with ``np_random``; ``seed`` is what ``reset`` was given."""
+    @property
+    def options(self) -> Any:
+        """The checked keywords."""
+        return self.episodes.options
 
-    @abstractmethod
-    def _advance(self, action: Any) -> tuple[float, bool, bool]:
-        """Act for one decision period; reward, terminated and truncated."""
+    def reset(
+        self, *, seed: int | np.integer[Any] | None = None, options: dict[str, Any] | None = None
+    ) -> tuple[Any, Info]:
+        """Begin an episode.
 
-    @abstractmethod
-    def _observe(self) -> Any:
-        """A fresh observation."""
-
-    @abstractmethod
-    def _info(self) -> Info:
-        """A fresh info that shares no memory with the world, since Gymnasium asks that no two steps do."""
-
-    @abstractmethod
-    def _picture(self) -> NDArray[np.uint8] | None:
-        """A picture; None where a window shows it."""
-
-    def reset(self, *, seed: int | None = None, options: dict[str, Any] | None = None) -> tuple[Any, Info]:
-        """Begin an episode."""
-        super().reset(seed=seed)
-        self._begin(seed)
+        Raises:
+            ConfigError: A seed that is no whole number of at least 0, or options, of which there are none.
+        """
+        if options:
+            raise ConfigError(f"options = {options!r} were given to reset(), which has none")
+        number = checked_seed(seed)
+        super().reset(seed=number)
+        self.episodes.reset([0], [self.np_random], [number])
         self._running = self._begun = True
         return self._observe(), self._info()
 
@@ -64,9 +65,17 @@ class SingleWorld(gym.Env[Any, Any]):
             raise ResetNeeded(
                 "step() needs a running episode; call reset() first, and again after an episode has ended"
             )
-        reward, terminated, truncated = self._advance(action)
-        self._running = not (terminated or truncated)
-        return self._observe(), reward, terminated, truncated, self._info()
+        rewards, terminated, truncated = self.episodes.step([action])
+        ended, cut_off = bool(terminated[0]), bool(truncated[0])
+        self._running = not (ended or cut_off)
+        return self._observe(), float(rewards[0]), ended, cut_off, self._info()
+
+    def _observe(self) -> Any:
+        return row_of(self.episodes.observe(), 0)
+
+    def _info(self) -> Info:
+        """A fresh info that shares no memory with the world, since Gymnasium asks that no two steps do."""
+        return of_world(self.episodes.infos(), 0, copy=True)
 
     def render(self) -> NDArray[np.uint8] | None:
         """Picture (height, width, 3); None without ``render_mode``, or where a window shows it.
@@ -79,4 +88,9 @@ class SingleWorld(gym.Env[Any, Any]):
             return None
         if not self._begun:
             raise ResetNeeded("render() needs an episode; call reset() first")
-        return self._picture()
+        picture: NDArray[np.uint8] | None = self.episodes.picture(0)
+        return picture
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        self.episodes.close()

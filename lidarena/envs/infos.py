@@ -8,15 +8,21 @@ from numpy.typing import NDArray
 Info = dict[str, Any]
 
 
-def of_world(info: Info, world: int) -> Info:
-    """One world's info out of a batch's; scalars become Python numbers."""
+def of_world(info: Info, world: int, copy: bool = False) -> Info:
+    """One world's info out of a batch's; scalars become Python numbers.
+
+    Args:
+        info: Of the batch.
+        world: Which one.
+        copy: Whether its arrays share no memory with the batch's.
+    """
     single: Info = {}
     for name, value in info.items():
         if isinstance(value, dict):
-            single[name] = of_world(value, world)
+            single[name] = of_world(value, world, copy)
         else:
             item = value[world]
-            single[name] = item.item() if item.ndim == 0 else item
+            single[name] = item.item() if item.ndim == 0 else item.copy() if copy else item
     return single
 
 
@@ -34,3 +40,12 @@ def row_of(batch: Any, row: int, copy: bool = False) -> Any:
     if isinstance(batch, dict):
         return {name: row_of(array, row, copy) for name, array in batch.items()}
     return batch[row].copy() if copy else batch[row]
+
+
+def overwrite(observations: Any, fresh: Any, rows: NDArray[np.bool_]) -> None:
+    """Put the fresh observations of some environments into those of a batch."""
+    if isinstance(observations, dict):
+        for name, array in observations.items():
+            array[rows] = fresh[name][rows]
+    else:
+        observations[rows] = fresh[rows]

@@ -1,66 +1,121 @@
-"""Registration of every environment id with Gymnasium."""
+"""Families of environments: what each tells of itself, and the ids that are registered with Gymnasium.
 
+A family is registered once, here or from outside with ``register_family``; nothing else lists families by name.
+"""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from importlib import import_module
 from typing import Any
 
 import gymnasium as gym
 
-from lidarena.envs.arena.env import ArenaEnv
-from lidarena.envs.corridor.central_env import CorridorCentralEnv
-from lidarena.envs.corridor.shared_env import register_shared
-from lidarena.envs.exploration.env import ExplorationEnv
+from lidarena.base.errors import ConfigError, suggest
 
-EPISODE_STEPS = 1000
-"""Yang et al.'s training cap."""
-ARENA_STEPS = 500
-"""Five times what it takes to cross an arena."""
-CENTRAL_ID = "lidarena/CorridorCentral-v0"
-EXPLORATION_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {
-    "lidarena/Exploration-v0": "willow_lobby"
-}
+BUILT_IN = ("exploration", "arena", "corridor")
+"""Packages of ``lidarena.envs`` that hold a ``FAMILY``."""
+_MOST_WRAPPERS = 64
 
 
-def make_single(max_episode_steps: int | None = None, **keywords: Any) -> ExplorationEnv:
-    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
-    return ExplorationEnv(max_episode_steps=max_episode_steps, **keywords)
+@dataclass(frozen=True)
+class Registration:
+    """How Gymnasium makes an id.
+
+    Attributes:
+        entry_point: ``"module:callable"`` of the single environment, or the callable; None if there is only a batch.
+        vector_entry_point: The same of the native batch; None if there is none.
+        max_episode_steps: After which ``gym.make`` truncates.
+        keywords: That the id stands for.
+    """
+
+    entry_point: str | Callable[..., Any] | None = None
+    vector_entry_point: str | Callable[..., Any] | None = None
+    max_episode_steps: int | None = None
+    keywords: Mapping[str, Any] = field(default_factory=dict)
 
 
-def make_single_arena(max_episode_steps: int | None = None, **keywords: Any) -> ArenaEnv:
-    """Entry point of ``gym.make``, likewise."""
-    return ArenaEnv(max_episode_steps=max_episode_steps, **keywords)
+@dataclass(frozen=True)
+class Family:
+    """A family of environments.
+
+    Attributes:
+        name: Its environments carry it as ``family``.
+        ids: What is registered with Gymnasium.
+        measures: ``"module:name"`` of the ``FamilyMeasures`` by which ``evaluate`` measures its episodes, tabulates and
+            draws them; None: by what every environment tells.
+        baselines: Module that registers its baselines when it is imported; None if there are none.
+    """
+
+    name: str
+    ids: Mapping[str, Registration] = field(default_factory=dict)
+    measures: str | None = None
+    baselines: str | None = None
 
 
-def make_central(max_episode_steps: int | None = None, **keywords: Any) -> CorridorCentralEnv:
-    """Entry point of ``gym.make`` for a team, as ``make_single`` for one robot."""
-    return CorridorCentralEnv(max_episode_steps=max_episode_steps, **keywords)
+_families: dict[str, Family] = {}
+
+
+def register_family(family: Family) -> None:
+    """Make a family and its ids known; doing so again with the same family changes nothing.
+
+    Raises:
+        ConfigError: Another family has this name.
+    """
+    known = _families.get(family.name)
+    if known is not None and known != family:
+        raise ConfigError(f"a family named {family.name!r} is registered already; choose another name")
+    _families[family.name] = family
+    for id_, registration in family.ids.items():
+        if id_ not in gym.registry:
+            gym.register(
+                id=id_,
+                entry_point=registration.entry_point,
+                vector_entry_point=registration.vector_entry_point,
+                max_episode_steps=registration.max_episode_steps,
+                kwargs=dict(registration.keywords),
+            )
 
 
 def register_all() -> None:
-    """Register the ids; doing so again changes nothing."""
-    _register_corridor()
-    for name, plan in EXPLORATION_MAPS.items():
-        if name not in gym.registry:
-            gym.register(
-                id=name,
-                entry_point="lidarena.envs.registration:make_single",
-                vector_entry_point="lidarena.envs.exploration.env:BatchedExploration",
-                max_episode_steps=EPISODE_STEPS,
-                kwargs={"map": plan},
-            )
-    if "lidarena/Arena-v0" not in gym.registry:
-        gym.register(
-            id="lidarena/Arena-v0",
-            entry_point="lidarena.envs.registration:make_single_arena",
-            vector_entry_point="lidarena.envs.arena.env:BatchedArena",
-            max_episode_steps=ARENA_STEPS,
-        )
+    """Register the families of the package; doing so again changes nothing."""
+    for name in BUILT_IN:
+        register_family(import_module(f"lidarena.envs.{name}").FAMILY)
 
 
-def _register_corridor() -> None:
-    register_shared()
-    if CENTRAL_ID not in gym.registry:
-        gym.register(
-            id=CENTRAL_ID,
-            entry_point="lidarena.envs.registration:make_central",
-            vector_entry_point="lidarena.envs.corridor.central_env:BatchedCorridor",
-            max_episode_steps=EPISODE_STEPS,
-        )
+def families() -> tuple[Family, ...]:
+    """Return all registered families, in the order of registration."""
+    return tuple(_families.values())
+
+
+def family_named(name: str) -> Family:
+    """Return a family.
+
+    Raises:
+        ConfigError: There is none of this name.
+    """
+    if name not in _families:
+        raise ConfigError(f"no family of environments is named {name!r}{suggest(name, _families)}")
+    return _families[name]
+
+
+def family_of(env: Any) -> str | None:
+    """Return the name of an environment's family, None for one that belongs to none.
+
+    It is the attribute ``family`` of the environment, or of what it wraps: by Gymnasium's wrappers, PettingZoo's, or
+    one of one's own that keeps what it wraps as ``env``.
+    """
+    owner = owner_of(env, "family")
+    return None if owner is None else str(owner.family)
+
+
+def owner_of(env: Any, attribute: str) -> Any:
+    """Return the environment itself or the nearest one inside it that has an attribute that is not None; else None."""
+    for _ in range(_MOST_WRAPPERS):
+        inner = getattr(env, "unwrapped", env)
+        for one in (env, inner):
+            if getattr(type(one), attribute, None) is not None or attribute in getattr(one, "__dict__", {}):
+                return one
+        env = inner.__dict__.get("env") if hasattr(inner, "__dict__") else None
+        if env is None:
+            return None
+    return None

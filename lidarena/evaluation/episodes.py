@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines import Policy
-from lidarena.baselines.registry import family_of
+from lidarena.envs.registration import family_of
 from lidarena.evaluation.measures.arena import measure_drive
 from lidarena.evaluation.measures.exploration import map_iou
 from lidarena.evaluation.measures.table_columns import names_for

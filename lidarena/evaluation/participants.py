@@ -13,7 +13,7 @@ from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.agents.shipped import resolve
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.baselines import Policy
-from lidarena.envs.corridor.shared_env import SHARED_ID
+from lidarena.envs.corridor import SHARED_ID
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 
 Env = gym.Env[Any, Any]

@@ -7,7 +7,7 @@ from lidarena import agents
 from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
 from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.base.errors import PolicyFileError
-from lidarena.envs.corridor.shared_env import SHARED_ID
+from lidarena.envs.corridor import SHARED_ID
 
 
 @pytest.mark.parametrize("name", agents.pretrained())

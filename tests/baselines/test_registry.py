@@ -4,7 +4,8 @@ import pytest
 
 from lidarena.base.errors import ConfigError
 from lidarena.baselines import Policy, make, names, register
-from lidarena.baselines.registry import family_of
+from lidarena.envs import ExplorationEnv
+from lidarena.envs.registration import family_of
 from tests.baselines.exploration.fake_exploration import FakeExploration, drawn
 
 
@@ -46,18 +47,18 @@ def test_another_family_is_refused(env):
         make("frontier", env)
 
 
-def test_family_is_the_attribute_or_told_by_the_id():
-    assert family_of(OfFamily()) == "arena"
-    assert family_of(Plain()) is None
+def test_family_is_the_attribute_found_through_wrappers():
+    class Own(gym.Env):
+        def __init__(self, env):
+            self.env = env
+
+    assert family_of(OfFamily()) == family_of(Own(OfFamily())) == family_of(Own(Own(OfFamily()))) == "arena"
+    assert family_of(Plain()) is None and family_of(Own(Plain())) is None
     env = Plain()
-    for env_id, family in (
-        ("lidarena/Env3-v0", "exploration"),
-        ("lidarena/Exploration-v0", "exploration"),
-        ("lidarena/Seabed-v0", None),
-        ("other/Env1-v0", None),
-    ):
-        env.spec = gym.envs.registration.EnvSpec(env_id)
-        assert family_of(env) == family
+    env.spec = gym.envs.registration.EnvSpec("lidarena/Env3-v0")
+    assert family_of(env) is None
+    assert family_of(ExplorationEnv(map="env1")) == "exploration"
+    assert family_of(gym.make("lidarena/Env1-v0")) == "exploration"
 
 
 def test_own_policies_can_be_registered_once():

@@ -30,7 +30,7 @@ class SharedFleetAgent:
         """
         self.learned, self._fleet = learned, Fleet(env)
         self._central = not hasattr(env.unwrapped, "possible_agents")
-        episodes = env.unwrapped.episodes
+        episodes = getattr(env.unwrapped.episodes, "teams", env.unwrapped.episodes)
         for what in ("observation_space", "action_space"):
             if getattr(episodes, what) != getattr(learned, what):
                 raise PolicyFileError(

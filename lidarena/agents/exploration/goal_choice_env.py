@@ -139,13 +139,3 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
     def close(self) -> None:
         """Close the world."""
         self._world.close()
-
-
-def register_goal_choice() -> None:
-    """Register the id; doing so again changes nothing."""
-    if GOAL_CHOICE_ID not in gym.registry:
-        gym.register(
-            id=GOAL_CHOICE_ID,
-            entry_point="lidarena.agents.exploration.goal_choice_env:GoalChoiceEnv",
-            vector_entry_point="lidarena.agents.exploration.goal_choice_batch:GoalChoiceBatch",
-        )

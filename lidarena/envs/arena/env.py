@@ -1,18 +1,17 @@
 """Goal reaching: a robot at constant speed among obstacles, which it sees with a lidar or knows beforehand."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any, ClassVar
+from typing import Any, ClassVar, Unpack
 
 import numpy as np
 from gymnasium.error import ResetNeeded
+from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
+from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.arena.episodes import ArenaEpisodes
-from lidarena.envs.arena.options import ArenaOptions
-from lidarena.envs.arena.rendering import draw_arena
+from lidarena.envs.arena.options import ArenaKeywords, ArenaOptions
 from lidarena.envs.base_env import SingleWorld
-from lidarena.envs.base_vector_env import BatchedWorlds, Outcome, whole_number_of_worlds
-from lidarena.envs.infos import Info, of_world
+from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
 from lidarena.world.floorplan import Floorplan
 
 
@@ -94,47 +93,29 @@ class ArenaEnv(SingleWorld):
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - as gym.Env has it
     family = "arena"
 
-    def __init__(self, **keywords: Any) -> None:
+    @takes_keywords_of(ArenaOptions)
+    def __init__(self, **keywords: Unpack[ArenaKeywords]) -> None:
         """Make one world; the keywords are those of ``ArenaOptions``.
 
         Raises:
             ConfigError: A keyword that is unknown or out of range.
             MapError: An arena that cannot be used, or whose start or goal is in an obstacle.
         """
-        options = ArenaOptions.checked(keywords)
-        self._episodes = ArenaEpisodes(1, options)
-        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
-        super().__init__(*spaces, options.render_mode)
-
-    def _begin(self, seed: int | None) -> None:
-        self._episodes.reset([0], [self.np_random], [seed])
-
-    def _advance(self, action: Any) -> tuple[float, bool, bool]:
-        rewards, terminated, truncated = self._episodes.step([action])
-        return float(rewards[0]), bool(terminated[0]), bool(truncated[0])
-
-    def _observe(self) -> Any:
-        return self._episodes.observe()[0]
-
-    def _info(self) -> Info:
-        info = of_world(self._episodes.infos(), 0)
-        for part in (info, info.get("truth", {})):
-            if "circles" in part:
-                part["circles"] = part["circles"].copy()
-        return info
+        super().__init__(ArenaEpisodes(1, ArenaOptions.checked(keywords)))
 
     @property
     def floorplan(self) -> Floorplan:
         """The arena as it is drawn, for pictures."""
-        scenario = self._episodes.core.scenarios[0]
+        scenario = self.episodes.core.scenarios[0]
         if scenario is None:
             raise ResetNeeded("there is no arena before reset()")
-        return scenario.plan
+        plan: Floorplan = scenario.plan
+        return plan
 
     @property
     def step_length(self) -> float:
         """What the robot drives in a decision period [m]."""
-        return self._episodes.core.step_length
+        return float(self.episodes.core.step_length)
 
     def show(self, plan: NDArray[np.float64], before: NDArray[np.float64] | None = None) -> None:
         """Let a policy's plan be seen in the picture until its next one, in place of the field's own.
@@ -143,12 +124,8 @@ class ArenaEnv(SingleWorld):
             plan: (S, 2) [m].
             before: (M, 2) the plan before it was smoothed, along which the picture shows forces [m].
         """
-        if self._episodes.recorder is not None:
-            self._episodes.recorder.show(0, plan, before)
-
-    def _picture(self) -> NDArray[np.uint8] | None:
-        recorder = self._episodes.recorder
-        return None if recorder is None else draw_arena(self._episodes.core, recorder, 0)
+        if self.episodes.recorder is not None:
+            self.episodes.recorder.show(0, plan, before)
 
 
 class BatchedArena(BatchedWorlds):
@@ -158,37 +135,25 @@ class BatchedArena(BatchedWorlds):
 
     Args:
         num_envs: Number of worlds.
+        autoreset_mode: What happens where an episode has ended, see ``BatchedWorlds``.
         keywords: Those of ``ArenaOptions``.
     """
 
     metadata: ClassVar[dict[str, Any]] = BatchedWorlds.metadata | {"render_fps": 10}  # type: ignore[misc]
     family = "arena"
 
-    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+    @takes_keywords_of(ArenaOptions)
+    def __init__(
+        self,
+        num_envs: int = 1,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
+        **keywords: Unpack[ArenaKeywords],
+    ) -> None:
         """Make the worlds; raises like ``ArenaEnv``."""
         worlds = whole_number_of_worlds(num_envs)
-        options = ArenaOptions.checked(keywords)
-        self._episodes = ArenaEpisodes(worlds, options)
-        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
-        super().__init__(worlds, worlds, self._episodes, spaces, options.render_mode)
+        super().__init__(ArenaEpisodes(worlds, ArenaOptions.checked(keywords)), autoreset_mode)
 
     @property
     def step_length(self) -> float:
         """What a robot drives in a decision period [m]."""
-        return self._episodes.core.step_length
-
-    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
-        self._episodes.reset(worlds, self._generators, seeds)
-
-    def _advance(self, actions: Any) -> Outcome:
-        return self._episodes.step(actions)
-
-    def _observe(self) -> Any:
-        return self._episodes.observe()
-
-    def _infos(self) -> Info:
-        return self._episodes.infos()
-
-    def _picture(self, world: int) -> NDArray[np.uint8] | None:
-        recorder = self._episodes.recorder
-        return None if recorder is None else draw_arena(self._episodes.core, recorder, world)
+        return float(self.episodes.core.step_length)

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lidarena.envs.arena.actions import heading_space, turns_of
 from lidarena.envs.arena.kernels import observe
 from lidarena.envs.arena.options import REWARD_TERMS, ArenaOptions
-from lidarena.envs.arena.rendering import PathRecorder
+from lidarena.envs.arena.rendering import PathRecorder, draw_arena
 from lidarena.envs.arena.state import ArenaCore
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.infos import Info
@@ -35,7 +35,7 @@ class ArenaEpisodes:
     """
 
     def __init__(self, worlds: int, options: ArenaOptions) -> None:
-        self.options = options
+        self.options, self.worlds, self.envs = options, worlds, worlds
         self.core = ArenaCore(worlds, options)
         self.single_action_space: gym.Space[Any] = heading_space(options.action)
         low = np.concatenate([np.zeros(options.beams + 1), np.full(2, -1.0)]).astype(np.float32)
@@ -89,7 +89,7 @@ class ArenaEpisodes:
         if self.recorder is not None:
             self.recorder.record(core)
         truncated = np.zeros(core.worlds, np.bool_)
-        if self.options.max_episode_steps is not None:
+        if self.options.max_episode_steps != -1:
             truncated |= self._steps >= self.options.max_episode_steps
         return rewards, collision | self._success, truncated
 
@@ -142,6 +142,17 @@ class ArenaEpisodes:
             own = {name: info[name].copy() for name in ("pose", "path_length")}
             info["truth"] = known | own | {"optimal_time": core.optimal_time.copy()}
         return info
+
+    def last_infos(self) -> Info:
+        """The same as ``infos``, whose arrays are copies."""
+        return self.infos()
+
+    def picture(self, world: int) -> NDArray[np.uint8] | None:
+        """The arena of one world, its potential, plan and path; None unless the worlds are drawn."""
+        return None if self.recorder is None else draw_arena(self.core, self.recorder, world)
+
+    def close(self) -> None:
+        """Nothing is held."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""

@@ -2,12 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch, plain
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.world.arenas import Arena
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.random_arenas import DENSITY
@@ -26,6 +26,38 @@ _CHOICES = {
 _RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)} | {f"{term}_weight": (0.0, 1e6) for term in REWARD_TERMS}
 _OPTIONAL_RANGES = {"max_range": (0.01, 1000.0), "decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
 _WHOLE = {"arenas": (1, 10**9), "beams": (4, 3600)}
+
+
+class ArenaKeywords(TypedDict, total=False):
+    """The keywords of ``ArenaOptions`` with their types, for editors and type checkers."""
+
+    arena: ArenaSpec | Sequence[ArenaSpec]
+    density: float | Sequence[float]
+    path: str | None
+    start: Sequence[float] | None
+    goal: Sequence[float] | None
+    arenas: int
+    pick: str
+    solvable: bool
+    action: str
+    observation: str
+    beams: int
+    max_range: float | None
+    lidar_noise: float
+    knowledge: str
+    speed: float
+    decision_period: float | None
+    goal_radius: float | None
+    max_episode_steps: int | None
+    progress_weight: float
+    success_weight: float
+    collision_weight: float
+    time_weight: float
+    clearance_weight: float
+    turn_weight: float
+    expose_truth: bool
+    field: str
+    render_mode: str | None
 
 
 @dataclass(frozen=True)
@@ -55,7 +87,7 @@ class ArenaOptions:
         speed: Of the robot [m/s].
         decision_period: Time between decisions [s]; None: 1 s in a 100 m room, and to scale in others.
         goal_radius: The goal is reached from this distance on [m]; None: 1 m in a 100 m room, and to scale in others.
-        max_episode_steps: Steps after which an episode is truncated; None never.
+        max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 500.
         progress_weight: Of the approach to the goal in a step, over the length of a step.
         success_weight: Of reaching the goal, 1 once.
         collision_weight: Of touching something, -1 once.
@@ -84,7 +116,7 @@ class ArenaOptions:
     speed: float = 1.0
     decision_period: float | None = None
     goal_radius: float | None = None
-    max_episode_steps: int | None = 500
+    max_episode_steps: int = 500
     progress_weight: float = 1.0
     success_weight: float = 10.0
     collision_weight: float = 10.0
@@ -103,7 +135,8 @@ class ArenaOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
         check_names("an arena environment", keywords, [field.name for field in fields(cls)])
-        options = cls(**plain(keywords))
+        given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
+        options = cls(**given)
         for name, allowed in _CHOICES.items():
             check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():
@@ -113,8 +146,7 @@ class ArenaOptions:
                 check_range(name, getattr(options, name), low, high)
         for name, (low, high) in _WHOLE.items():
             check_range(name, getattr(options, name), low, high, whole=True)
-        if options.max_episode_steps is not None:
-            check_range("max_episode_steps", options.max_episode_steps, 1, 10**9, whole=True)
+        check_step_limit(options.max_episode_steps)
         check_switch("expose_truth", options.expose_truth)
         check_switch("solvable", options.solvable)
         options._check_arenas()

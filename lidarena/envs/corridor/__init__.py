@@ -1,1 +1,48 @@
 """Teams of robots on a floor plan: the corridor family."""
+
+from typing import Any
+
+from lidarena.base.errors import ConfigError
+from lidarena.envs.corridor.central_env import BatchedCorridor, CorridorCentralEnv
+from lidarena.envs.corridor.shared_env import SharedCorridor
+from lidarena.envs.registration import Family, Registration
+
+__all__ = ["FAMILY", "BatchedCorridor", "CorridorCentralEnv", "SharedCorridor"]
+
+EPISODE_STEPS = 1000
+"""Enough to cross the office some ten times."""
+SHARED_ID = "lidarena/CorridorShared-v0"
+"""Of the batch of robots that share a policy; there is no single environment of them."""
+
+
+def make_single(**keywords: Any) -> CorridorCentralEnv:
+    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
+    return CorridorCentralEnv(**{"max_episode_steps": -1, **keywords})
+
+
+
+def refuse_single(**keywords: Any) -> CorridorCentralEnv:
+    """Say that robots that share a policy come in batches only.
+
+    Raises:
+        ConfigError: Always.
+    """
+    raise ConfigError(
+        f"{SHARED_ID!r} is a batch of robots: make it with gym.make_vec(..., vectorization_mode='vector_entry_point'), "
+        "or 'lidarena/CorridorCentral-v0' for a single team"
+    )
+
+
+FAMILY = Family(
+    "corridor",
+    ids={
+        "lidarena/CorridorCentral-v0": Registration(
+            "lidarena.envs.corridor:make_single", "lidarena.envs.corridor.central_env:BatchedCorridor", EPISODE_STEPS
+        ),
+        SHARED_ID: Registration(
+            "lidarena.envs.corridor:refuse_single", "lidarena.envs.corridor.shared_env:SharedCorridor", EPISODE_STEPS
+        ),
+    },
+    measures="lidarena.evaluation.measures.corridor:MEASURES",
+    baselines="lidarena.baselines.corridor",
+)

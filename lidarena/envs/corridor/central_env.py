@@ -1,47 +1,100 @@
 """The multi-robot world for one controller of the whole team, single and in batches."""
 
 from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Unpack
 
 import gymnasium as gym
 import numpy as np
+from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
+from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_env import SingleWorld
-from lidarena.envs.base_vector_env import BatchedWorlds, Outcome, whole_number_of_worlds
+from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
 from lidarena.envs.corridor.episodes import CorridorEpisodes
-from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
-from lidarena.envs.corridor.window import draw_world
-from lidarena.envs.infos import Info, of_world
+from lidarena.envs.corridor.window import close_window, draw_world
+from lidarena.envs.episodes import Outcome
+from lidarena.envs.infos import Info
 from lidarena.world.floorplan import Floorplan
 
 
-def team_spaces(episodes: CorridorEpisodes) -> tuple[gym.spaces.Box, gym.Space[Any]]:
-    """Observation and action space of a whole team: those of a robot, one row a robot."""
-    robots, one = episodes.options.robots, episodes.observation_space
-    observations = gym.spaces.Box(-1.0, 1.0, (robots, *one.shape), np.float32)
-    if isinstance(episodes.action_space, gym.spaces.Discrete):
-        return observations, gym.spaces.MultiDiscrete([int(episodes.action_space.n)] * robots)
-    return observations, gym.spaces.Box(-1.0, 1.0, (robots, 2), np.float32)
+class CentralEpisodes:
+    """Episodes of teams, each team one environment; see ``lidarena.envs.episodes.Episodes``.
 
+    Args:
+        worlds: Number of teams.
+        options: Checked keywords.
 
-def team_infos(episodes: CorridorEpisodes) -> Info:
-    """What every step tells, as arrays over worlds."""
-    robots = episodes.robot_infos()
-    own: Info = {
-        "poses": robots["pose"],
-        "goals": robots["goal"],
-        "remaining": robots["remaining"],
-        "arrived": robots["arrived"],
-        "finished": episodes.finished.copy(),
-        "collided": robots["collision"],
-        "collision": robots["collision"].any(axis=1),
-        "path_lengths": robots["path_length"],
-        "reward_terms": {name: term.sum(axis=1) for name, term in robots["reward_terms"].items()},
-        "measures": episodes.measures(),
-    }
-    return own | episodes.world_infos()
+    Attributes:
+        teams: The same episodes robot by robot.
+    """
+
+    def __init__(self, worlds: int, options: CorridorOptions) -> None:
+        self.options, self.worlds, self.envs = options, worlds, worlds
+        self.teams = CorridorEpisodes(worlds, options)
+        robots, one = options.robots, self.teams.observation_space
+        self.single_observation_space: gym.Space[Any] = gym.spaces.Box(-1.0, 1.0, (robots, *one.shape), np.float32)
+        self.single_action_space: gym.Space[Any] = gym.spaces.Box(-1.0, 1.0, (robots, 2), np.float32)
+        if isinstance(self.teams.action_space, gym.spaces.Discrete):
+            self.single_action_space = gym.spaces.MultiDiscrete([int(self.teams.action_space.n)] * robots)
+
+    def reset(
+        self,
+        worlds: Iterable[int],
+        generators: Sequence[np.random.Generator],
+        seeds: Sequence[int | None] | None = None,
+    ) -> None:
+        """Begin a new episode in each of ``worlds``."""
+        self.teams.reset(worlds, generators)
+
+    def step(self, actions: Any) -> Outcome:
+        """Act in every world; the rewards of its robots add up."""
+        rewards, _, _ = self.teams.step(actions)
+        terminated = np.asarray(self.teams.finished.all(axis=1))
+        return rewards.sum(axis=1), terminated, self.teams.over & ~terminated
+
+    def observe(self) -> NDArray[np.float32]:
+        """Fresh observations (worlds, robots, …), zeros of robots that are finished."""
+        return self.teams.observe()
+
+    def infos(self) -> Info:
+        """What every step tells, as arrays over worlds."""
+        robots = self.teams.robot_infos()
+        own: Info = {
+            "poses": robots["pose"],
+            "goals": robots["goal"],
+            "remaining": robots["remaining"],
+            "arrived": robots["arrived"],
+            "finished": self.teams.finished.copy(),
+            "collided": robots["collision"],
+            "collision": robots["collision"].any(axis=1),
+            "path_lengths": robots["path_length"],
+            "reward_terms": {name: term.sum(axis=1) for name, term in robots["reward_terms"].items()},
+            "measures": self.teams.measures(),
+        }
+        return own | self.teams.world_infos()
+
+    def last_infos(self) -> Info:
+        """The same as ``infos``: the map never changes, all else are copies."""
+        return self.infos()
+
+    def picture(self, world: int) -> NDArray[np.uint8] | None:
+        """A picture of one team; None where nothing is drawn, or a window shows it."""
+        return draw_world(self.teams, world)
+
+    def close(self) -> None:
+        """Close the window, if there is one."""
+        close_window(self.teams)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Everything that later steps depend on, by name, except the generators."""
+        return self.teams.arrays()
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of other episodes with the same options."""
+        self.teams.load_arrays(saved)
 
 
 class CorridorCentralEnv(SingleWorld):
@@ -96,48 +149,24 @@ class CorridorCentralEnv(SingleWorld):
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "human"], "render_fps": 5}  # noqa: RUF012
     family = "corridor"
 
-    def __init__(self, **keywords: Any) -> None:
+    @takes_keywords_of(CorridorOptions)
+    def __init__(self, **keywords: Unpack[CorridorKeywords]) -> None:
         """Make one world; the keywords are those of ``CorridorOptions``.
 
         Raises:
             LidarenaError: A keyword, floor plan, start or goal that cannot be had.
         """
-        options = CorridorOptions.checked(keywords)
-        self.episodes = CorridorEpisodes(1, options)
-        super().__init__(*team_spaces(self.episodes), options.render_mode)
+        super().__init__(CentralEpisodes(1, CorridorOptions.checked(keywords)))
 
     @property
     def floorplan(self) -> Floorplan:
         """The floor plan, for pictures."""
-        return self.episodes.core.plan
-
-    @property
-    def options(self) -> CorridorOptions:
-        """The keywords."""
-        return self.episodes.options
-
-    def _begin(self, seed: int | None) -> None:
-        self.episodes.reset([0], [self.np_random])
-
-    def _advance(self, action: Any) -> tuple[float, bool, bool]:
-        rewards, _, _ = self.episodes.step([action])
-        terminated, over = bool(self.episodes.finished.all()), bool(self.episodes.over[0])
-        return float(rewards.sum(axis=1)[0]), terminated, over and not terminated
-
-    def _observe(self) -> Any:
-        return self.episodes.observe()[0]
-
-    def _info(self) -> Info:
-        info = of_world(team_infos(self.episodes), 0)
-        info["map"] = info["map"].copy()
-        return info
+        plan: Floorplan = self.episodes.teams.core.plan
+        return plan
 
     def show(self, sketch: TeamSketch) -> None:
         """Let a planner's sketch be seen in the picture until the next one."""
-        self.episodes.sketches[0] = sketch
-
-    def _picture(self) -> NDArray[np.uint8] | None:
-        return draw_world(self.episodes, 0)
+        self.episodes.teams.sketches[0] = sketch
 
 
 class BatchedCorridor(BatchedWorlds):
@@ -147,31 +176,19 @@ class BatchedCorridor(BatchedWorlds):
 
     Args:
         num_envs: Number of worlds.
-        **keywords: See ``CorridorOptions``.
+        autoreset_mode: What happens where an episode has ended, see ``BatchedWorlds``.
+        keywords: See ``CorridorOptions``.
     """
 
     family = "corridor"
 
-    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+    @takes_keywords_of(CorridorOptions)
+    def __init__(
+        self,
+        num_envs: int = 1,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
+        **keywords: Unpack[CorridorKeywords],
+    ) -> None:
         """Make the worlds; raises like ``CorridorCentralEnv``."""
         worlds = whole_number_of_worlds(num_envs)
-        options = CorridorOptions.checked(keywords)
-        self.episodes = CorridorEpisodes(worlds, options)
-        super().__init__(worlds, worlds, self.episodes, team_spaces(self.episodes), options.render_mode)
-
-    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
-        self.episodes.reset(worlds, self._generators)
-
-    def _advance(self, actions: Any) -> Outcome:
-        rewards, _, _ = self.episodes.step(actions)
-        terminated = np.asarray(self.episodes.finished.all(axis=1))
-        return rewards.sum(axis=1), terminated, self.episodes.over & ~terminated
-
-    def _observe(self) -> Any:
-        return self.episodes.observe()
-
-    def _infos(self) -> Info:
-        return team_infos(self.episodes)
-
-    def _picture(self, world: int) -> NDArray[np.uint8] | None:
-        return draw_world(self.episodes, world)
+        super().__init__(CentralEpisodes(worlds, CorridorOptions.checked(keywords)), autoreset_mode)

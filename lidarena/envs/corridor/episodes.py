@@ -144,7 +144,7 @@ class CorridorEpisodes:
     @property
     def _out_of_time(self) -> NDArray[np.bool_]:
         most = self.options.max_episode_steps
-        return np.zeros(len(self.steps), np.bool_) if most is None else self.steps >= most
+        return np.zeros(len(self.steps), np.bool_) if most == -1 else self.steps >= most
 
     @property
     def time(self) -> NDArray[np.float64]:

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, TypedDict
 
 from lidarena.base.errors import ConfigError, suggest
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch, plain
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.world.floorplan import Floorplan
 
 MapSpec = str | Floorplan
@@ -32,6 +32,37 @@ _WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440), "neighbours": (0, MOST
 _CHOICES = {"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")}
 
 
+class CorridorKeywords(TypedDict, total=False):
+    """The keywords of ``CorridorOptions`` with their types, for editors and type checkers."""
+
+    map: MapSpec
+    robots: int
+    places: str | None
+    starts: Points | None
+    goals: Points | None
+    action: str
+    radius: float
+    beams: int
+    lidar_range: float
+    lidar_noise: float
+    neighbours: int
+    motion_noise: float
+    localization_noise: float
+    stall_rate: float
+    decision_period: float
+    goal_tolerance: float
+    collision_ends: bool
+    max_episode_steps: int | None
+    expose_truth: bool
+    render_mode: str | None
+    progress_weight: float
+    arrival_weight: float
+    collision_weight: float
+    time_weight: float
+    closeness_weight: float
+    turning_weight: float
+
+
 @dataclass(frozen=True)
 class CorridorOptions:
     """Keywords of ``corridor_v0.parallel_env``, ``corridor_v0.env`` and ``lidarena/CorridorCentral-v0``.
@@ -56,7 +87,8 @@ class CorridorOptions:
         decision_period: Time between decisions [s].
         goal_tolerance: Distance from the goal at which a robot has arrived [m].
         collision_ends: Whether a robot that touches something is finished; else it drives on.
-        max_episode_steps: Steps after which an episode is truncated; None never. PettingZoo calls it ``max_cycles``.
+        max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 1000. PettingZoo calls it
+            ``max_cycles``.
         expose_truth: Give ``info["truth"]``, for evaluation.
         render_mode: None, ``"rgb_array"`` or ``"human"``.
         progress_weight: Of a metre of the way to the goal.
@@ -84,7 +116,7 @@ class CorridorOptions:
     decision_period: float = 0.2
     goal_tolerance: float = 0.15
     collision_ends: bool = True
-    max_episode_steps: int | None = 1000
+    max_episode_steps: int = 1000
     expose_truth: bool = False
     render_mode: str | None = None
     progress_weight: float = 1.0
@@ -102,7 +134,8 @@ class CorridorOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
         check_names("a corridor environment", keywords, [field.name for field in fields(cls)])
-        options = cls(**plain(keywords))
+        given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
+        options = cls(**given)
         for name, allowed in _CHOICES.items():
             check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():
@@ -113,8 +146,7 @@ class CorridorOptions:
         return options
 
     def _check_rest(self) -> None:
-        if self.max_episode_steps is not None:
-            check_range("max_episode_steps", self.max_episode_steps, 1, 10**9, whole=True)
+        check_step_limit(self.max_episode_steps)
         for name in ("collision_ends", "expose_truth"):
             check_switch(name, getattr(self, name))
         if not isinstance(self.map, str | Floorplan):

@@ -6,7 +6,7 @@ fleet = corridor_v0.parallel_env(map="office", robots=4)
 """
 
 from collections.abc import Mapping
-from typing import Any
+from typing import Any, Unpack
 
 import gymnasium as gym
 import numpy as np
@@ -18,8 +18,9 @@ from pettingzoo.utils import parallel_to_aec, wrappers
 
 from lidarena.base.errors import ActionError, ConfigError, suggest
 from lidarena.base.generator_state import generator_from_words, generator_words
+from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.corridor.episodes import CorridorEpisodes
-from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.corridor.window import close_window, draw_world
 from lidarena.envs.infos import Info, of_world
@@ -119,11 +120,12 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
     }
     family = "corridor"
 
-    def __init__(self, max_cycles: int | None = 1000, **keywords: Any) -> None:
+    @takes_keywords_of(CorridorOptions)
+    def __init__(self, max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]) -> None:
         """Make one world.
 
         Args:
-            max_cycles: Steps after which an episode is truncated; None never.
+            max_cycles: Steps after which an episode is truncated; None is 1000, -1 never.
             **keywords: Those of ``CorridorOptions``.
 
         Raises:
@@ -131,9 +133,9 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         """
         if "max_episode_steps" in keywords:
             raise ConfigError("keyword 'max_episode_steps' is called 'max_cycles' here, as everywhere in PettingZoo")
-        options = CorridorOptions.checked(keywords | {"max_episode_steps": max_cycles})
+        options = CorridorOptions.checked({**keywords, "max_episode_steps": max_cycles})
         self.episodes = CorridorEpisodes(1, options)
-        self.max_cycles, self.render_mode = max_cycles, options.render_mode
+        self.max_cycles, self.render_mode = options.max_episode_steps, options.render_mode
         self.possible_agents = [agent_name(robot) for robot in range(options.robots)]
         self.agents: list[str] = []
         self._numbers = {name: robot for robot, name in enumerate(self.possible_agents)}
@@ -281,16 +283,23 @@ def _copy(space: gym.Space[Any]) -> gym.Space[Any]:
     return gym.spaces.Box(space.low, space.high, dtype=np.float32)
 
 
-def parallel_env(max_cycles: int | None = 1000, **keywords: Any) -> CorridorEnv:
+@takes_keywords_of(CorridorOptions)
+def parallel_env(max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]) -> CorridorEnv:
     """Make the environment in PettingZoo's parallel form; see ``CorridorEnv``."""
     return CorridorEnv(max_cycles, **keywords)
 
 
-def raw_env(max_cycles: int | None = 1000, **keywords: Any) -> AECEnv[str, NDArray[np.float32], Any]:
+@takes_keywords_of(CorridorOptions)
+def raw_env(
+    max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]
+) -> AECEnv[str, NDArray[np.float32], Any]:
     """Make the environment in PettingZoo's agent-by-agent form, without wrappers."""
     return parallel_to_aec(parallel_env(max_cycles, **keywords))
 
 
-def env(max_cycles: int | None = 1000, **keywords: Any) -> AECEnv[str, NDArray[np.float32], Any]:
+@takes_keywords_of(CorridorOptions)
+def env(
+    max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]
+) -> AECEnv[str, NDArray[np.float32], Any]:
     """Make the environment in PettingZoo's agent-by-agent form (AEC), by PettingZoo's conversion."""
     return wrappers.OrderEnforcingWrapper(raw_env(max_cycles, **keywords))

@@ -1,1 +1,39 @@
 """Active SLAM: the exploration family."""
+
+from typing import Any
+
+from lidarena.envs.exploration.env import BatchedExploration, ExplorationEnv
+from lidarena.envs.registration import Family, Registration
+
+__all__ = ["FAMILY", "BatchedExploration", "ExplorationEnv"]
+
+EPISODE_STEPS = 1000
+"""DA-SLAM's cap in training."""
+_MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {"lidarena/Exploration-v0": "willow_lobby"}
+
+
+def make_single(**keywords: Any) -> ExplorationEnv:
+    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
+    return ExplorationEnv(**{"max_episode_steps": -1, **keywords})
+
+
+FAMILY = Family(
+    "exploration",
+    ids={
+        name: Registration(
+            "lidarena.envs.exploration:make_single",
+            "lidarena.envs.exploration.env:BatchedExploration",
+            EPISODE_STEPS,
+            {"map": plan},
+        )
+        for name, plan in _MAPS.items()
+    }
+    | {
+        "lidarena/GoalChoice-v0": Registration(
+            "lidarena.agents.exploration.goal_choice_env:GoalChoiceEnv",
+            "lidarena.agents.exploration.goal_choice_batch:GoalChoiceBatch",
+        )
+    },
+    measures="lidarena.evaluation.measures.exploration:MEASURES",
+    baselines="lidarena.baselines.exploration",
+)

@@ -1,17 +1,15 @@
 """Active SLAM: a robot with a lidar explores an unknown world, its map and pose coming out of a particle filter."""
 
-from collections.abc import Iterable, Sequence
-from typing import Any
+from typing import Any, Unpack
 
-import numpy as np
-from numpy.typing import NDArray
+from gymnasium.vector import AutoresetMode
 
+from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_env import SingleWorld
-from lidarena.envs.base_vector_env import BatchedWorlds, Outcome, whole_number_of_worlds
+from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
 from lidarena.envs.exploration.episodes import ExplorationEpisodes
-from lidarena.envs.exploration.options import ExplorationOptions
-from lidarena.envs.exploration.rendering import draw_exploration
-from lidarena.envs.infos import Info, of_world, row_of
+from lidarena.envs.exploration.options import ExplorationKeywords, ExplorationOptions
+from lidarena.envs.exploration.state import ExplorationCore
 from lidarena.world.floorplan import Floorplan
 
 
@@ -105,44 +103,23 @@ class ExplorationEnv(SingleWorld):
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012 - as gym.Env declares it
+    family = "exploration"
 
-    def __init__(self, **keywords: Any) -> None:
+    @takes_keywords_of(ExplorationOptions)
+    def __init__(self, **keywords: Unpack[ExplorationKeywords]) -> None:
         """Make one world; the keywords are those of ``ExplorationOptions``.
 
         Raises:
             ConfigError: A keyword that is unknown or out of range.
             MapError: A floor plan or start that cannot be used.
         """
-        options = ExplorationOptions.checked(keywords)
-        self._episodes = ExplorationEpisodes(1, options)
-        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
-        super().__init__(*spaces, options.render_mode)
-
-    def _begin(self, seed: int | None) -> None:
-        self._episodes.reset([0], [self.np_random])
-
-    def _advance(self, action: Any) -> tuple[float, bool, bool]:
-        rewards, terminated, truncated = self._episodes.step([action])
-        return float(rewards[0]), bool(terminated[0]), bool(truncated[0])
-
-    def _observe(self) -> Any:
-        return row_of(self._episodes.observe(), 0)
-
-    def _info(self) -> Info:
-        info = of_world(self._episodes.infos(), 0)
-        info["map"] = info["map"].copy()
-        info["map"].flags.writeable = False
-        return info
+        super().__init__(ExplorationEpisodes(1, ExplorationOptions.checked(keywords)))
 
     @property
     def floorplan(self) -> Floorplan:
         """The world's true floor plan, for pictures; no policy may look at it."""
-        core = self._episodes.core
+        core: ExplorationCore = self.episodes.core
         return core.plans[int(core.plan[0])]
-
-    def _picture(self) -> NDArray[np.uint8] | None:
-        recorder = self._episodes.recorder
-        return None if recorder is None else draw_exploration(self._episodes.core, recorder, 0)
 
 
 class BatchedExploration(BatchedWorlds):
@@ -152,34 +129,19 @@ class BatchedExploration(BatchedWorlds):
 
     Args:
         num_envs: Number of worlds.
+        autoreset_mode: What happens where an episode has ended, see ``BatchedWorlds``.
         keywords: Those of ``ExplorationOptions``.
     """
 
-    def __init__(self, num_envs: int = 1, **keywords: Any) -> None:
+    family = "exploration"
+
+    @takes_keywords_of(ExplorationOptions)
+    def __init__(
+        self,
+        num_envs: int = 1,
+        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
+        **keywords: Unpack[ExplorationKeywords],
+    ) -> None:
         """Make the worlds; raises like ``ExplorationEnv``."""
         worlds = whole_number_of_worlds(num_envs)
-        options = ExplorationOptions.checked(keywords)
-        self._episodes = ExplorationEpisodes(worlds, options)
-        spaces = self._episodes.single_observation_space, self._episodes.single_action_space
-        super().__init__(worlds, worlds, self._episodes, spaces, options.render_mode)
-
-    def _begin(self, worlds: Iterable[int], seeds: Sequence[int | None] | None) -> None:
-        self._episodes.reset(worlds, self._generators)
-
-    def _advance(self, actions: Any) -> Outcome:
-        return self._episodes.step(actions)
-
-    def _observe(self) -> Any:
-        return self._episodes.observe()
-
-    def _infos(self) -> Info:
-        return self._episodes.infos()
-
-    def _last_infos(self) -> Info:
-        last = self._episodes.infos()
-        del last["map"]  # a view on maps that are about to be forgotten
-        return last
-
-    def _picture(self, world: int) -> NDArray[np.uint8] | None:
-        recorder = self._episodes.recorder
-        return None if recorder is None else draw_exploration(self._episodes.core, recorder, world)
+        super().__init__(ExplorationEpisodes(worlds, ExplorationOptions.checked(keywords)), autoreset_mode)

@@ -12,7 +12,7 @@ from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.exploration.actions import action_space, commands_of
 from lidarena.envs.exploration.observations import make_observer
 from lidarena.envs.exploration.options import ExplorationOptions
-from lidarena.envs.exploration.rendering import PathRecorder
+from lidarena.envs.exploration.rendering import PathRecorder, draw_exploration
 from lidarena.envs.exploration.rewards import make_reward
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
 from lidarena.envs.infos import Info
@@ -36,7 +36,7 @@ class ExplorationEpisodes:
     """
 
     def __init__(self, worlds: int, options: ExplorationOptions) -> None:
-        self.options = options
+        self.options, self.worlds, self.envs = options, worlds, worlds
         self.core = ExplorationCore(worlds, options)
         self.single_action_space: gym.Space[Any] = action_space(options.action)
         parts = 1 if options.action == "discrete" else 2
@@ -51,7 +51,12 @@ class ExplorationEpisodes:
         self._reward = make_reward(self.core, options)
         self._compiled = False
 
-    def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
+    def reset(
+        self,
+        worlds: Iterable[int],
+        generators: Sequence[np.random.Generator],
+        seeds: Sequence[int | None] | None = None,
+    ) -> None:
         """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
         with nullcontext() if self._compiled else announced_compilation():
             for world in worlds:
@@ -90,7 +95,7 @@ class ExplorationEpisodes:
         gain = self._completeness >= self._gained + _GAIN
         self._gained[gain], self._gained_at[gain] = self._completeness[gain], self._steps[gain]
         truncated = np.zeros(self.core.worlds, np.bool_)
-        if self.options.max_episode_steps is not None:
+        if self.options.max_episode_steps != -1:
             truncated |= self._steps >= self.options.max_episode_steps
         if self.options.patience is not None:
             truncated |= (self._steps - self._gained_at) * self.options.decision_period >= self.options.patience
@@ -132,6 +137,19 @@ class ExplorationEpisodes:
             truth = {"pose": core.physics.poses[:, 0].copy(), "path_length": core.sensors.true_path_length.copy()}
             info["truth"] = truth
         return info
+
+    def last_infos(self) -> Info:
+        """The infos without the map, a view on maps that are about to be forgotten."""
+        last = self.infos()
+        del last["map"]
+        return last
+
+    def picture(self, world: int) -> NDArray[np.uint8] | None:
+        """The truth beside the belief of one world; None unless the worlds are drawn."""
+        return None if self.recorder is None else draw_exploration(self.core, self.recorder, world)
+
+    def close(self) -> None:
+        """Nothing is held."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""

@@ -2,10 +2,10 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
-from typing import Any
+from typing import Any, TypedDict
 
 from lidarena.base.errors import ConfigError, MapError, suggest
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch, plain
+from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.envs.exploration.coverage import START_MARGIN
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
 
@@ -37,6 +37,30 @@ _RANGES = {
 }
 
 
+class ExplorationKeywords(TypedDict, total=False):
+    """The keywords of ``ExplorationOptions`` with their types, for editors and type checkers."""
+
+    map: MapSpec | Sequence[MapSpec]
+    reward: str
+    observation: str
+    action: str
+    slam: str
+    particles: int
+    lidar_noise: float
+    odometry_noise: float
+    decision_period: float
+    collision_distance: float
+    max_episode_steps: int | None
+    start: Pose | str | None
+    stop_at: float | None
+    patience: float | None
+    expose_truth: bool
+    render_mode: str | None
+    eta: float
+    weights: Mapping[str, float] | None
+    certain_enough: float
+
+
 @dataclass(frozen=True)
 class ExplorationOptions:
     """Keywords of ``lidarena/Exploration-v0`` and ``lidarena/Env1-v0`` … ``Env4-v0``.
@@ -57,7 +81,7 @@ class ExplorationOptions:
         decision_period: Time between decisions [s].
         collision_distance: Range of a beam below which it is a collision [m], DA-SLAM's by default; a larger one in
             training teaches a margin. No more than the 0.25 m that random starts keep from the walls.
-        max_episode_steps: Steps after which an episode is truncated; None never.
+        max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 1000.
         start: (x, y, theta) in the map's frame, ``"random"``, or None for the map's own.
         stop_at: Completeness that ends an episode as done; None never.
         patience: Time without 0.1% more completeness after which an episode is truncated [s]; None never.
@@ -80,7 +104,7 @@ class ExplorationOptions:
     odometry_noise: float = 1.0
     decision_period: float = 0.2
     collision_distance: float = START_CLEARANCE
-    max_episode_steps: int | None = 1000
+    max_episode_steps: int = 1000
     start: Pose | str | None = None
     stop_at: float | None = 0.995
     patience: float | None = None
@@ -99,7 +123,8 @@ class ExplorationOptions:
             MapError: A start that is neither a pose, ``"random"`` nor None.
         """
         check_names("an exploration environment", keywords, [field.name for field in fields(cls)])
-        options = cls(**plain(keywords))
+        given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
+        options = cls(**given)
         for name, allowed in _CHOICES.items():
             check_choice(name, getattr(options, name), allowed)
         for name, (low, high) in _RANGES.items():
@@ -108,8 +133,7 @@ class ExplorationOptions:
         return options
 
     def _check_rest(self) -> None:
-        if self.max_episode_steps is not None:
-            check_range("max_episode_steps", self.max_episode_steps, 1, 10**9, whole=True)
+        check_step_limit(self.max_episode_steps)
         if self.stop_at is not None:
             check_range("stop_at", self.stop_at, 0.0, 1.0)
         if self.patience is not None:

@@ -11,7 +11,7 @@ from gymnasium.utils.env_checker import check_env
 from lidarena import agents
 from lidarena.agents.candidate_policy import CandidateScores
 from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
-from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID, GoalChoiceEnv, register_goal_choice
+from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID, GoalChoiceEnv
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.errors import ConfigError
 from lidarena.base.yaml_config import check_config
@@ -146,6 +146,4 @@ def test_a_training_that_was_cut_off_goes_on_to_the_bit(tmp_path: Path) -> None:
 
 
 def test_the_id_is_registered_once() -> None:
-    register_goal_choice()
-    register_goal_choice()
     assert GOAL_CHOICE_ID in gym.registry

@@ -8,7 +8,8 @@ from numba import config
 import lidarena  # noqa: F401
 from lidarena.base.errors import ActionError, ConfigError
 from lidarena.envs import BatchedCorridor, corridor_v0, set_num_threads
-from lidarena.envs.corridor.shared_env import SHARED_ID, SharedCorridor
+from lidarena.envs.corridor import SHARED_ID
+from lidarena.envs.corridor.shared_env import SharedCorridor
 
 STEPS = 50
 CROWD = {"places": "random", "robots": 3, "max_episode_steps": 30, "radius": 0.3, "stall_rate": 0.05, "neighbours": 1}

@@ -7,9 +7,10 @@ from gymnasium.utils.env_checker import check_env
 import lidarena  # noqa: F401
 from lidarena.base.errors import ActionError, ConfigError, MapError
 from lidarena.envs import BatchedExploration, ExplorationEnv
-from lidarena.envs.registration import EXPLORATION_MAPS, register_all
+from lidarena.envs.exploration import FAMILY
+from lidarena.envs.registration import register_all
 
-IDS = sorted(EXPLORATION_MAPS)
+IDS = sorted(set(FAMILY.ids) - {"lidarena/GoalChoice-v0"})
 
 
 @pytest.mark.parametrize("name", IDS)
@@ -105,13 +106,13 @@ def test_gym_makes_own_limit_truncates_in_every_mode() -> None:
     batch.reset(seed=0)
     assert [batch.step(np.ones(2, int))[3].tolist() for _ in range(3)] == [[False] * 2, [False] * 2, [True] * 2]
     assert gym.make("lidarena/Env3-v0").spec.max_episode_steps == 1000
-    assert ExplorationEnv(map="env3")._episodes.options.max_episode_steps == 1000
+    assert ExplorationEnv(map="env3").episodes.options.max_episode_steps == 1000
 
 
 def test_a_sector_holds_the_nearest_of_its_beams() -> None:
     env = ExplorationEnv(map="env3", observation="sectors", slam="truth")
     observation, info = env.reset(seed=3)
-    scan = env._episodes.core.sensors.scans[0, 0] / np.float32(3.5)
+    scan = env.episodes.core.sensors.scans[0, 0] / np.float32(3.5)
     assert observation.shape == (38,) and observation[-1] == pytest.approx(info["completeness"], abs=1e-6)
     for sector in range(36):
         beams = np.arange(10 * sector - 5, 10 * sector + 5) % 360
@@ -123,7 +124,7 @@ def test_the_observation_holds_beams_previous_action_and_completeness() -> None:
     observation, info = env.reset(seed=3)
     assert observation[5] == 0.0
     observation, _, _, _, info = env.step(2)
-    scan = env.unwrapped._episodes.core.sensors.scans[0, 0]
+    scan = env.unwrapped.episodes.core.sensors.scans[0, 0]
     assert observation[:5] == pytest.approx(scan[[0, 45, 90, 315, 270]] / 3.5)
     assert observation[5] == 1.0
     assert observation[6] == pytest.approx(info["completeness"], abs=1e-6)
@@ -144,7 +145,7 @@ def test_the_picture_of_the_map_is_egocentric_and_heading_up() -> None:
 
 def test_random_starts_are_free_and_differ() -> None:
     env = gym.make("lidarena/Env4-v0", start="random", expose_truth=True)
-    plan = env.unwrapped._episodes.core.plans[0]
+    plan = env.unwrapped.episodes.core.plans[0]
     poses = np.array([env.reset(seed=k)[1]["truth"]["pose"] for k in range(30)])
     assert (plan.clearance(poses[:, :2]) >= 0.2).all()
     assert np.unique(poses, axis=0).shape[0] > 25
@@ -153,7 +154,7 @@ def test_random_starts_are_free_and_differ() -> None:
 def test_a_list_of_maps_is_drawn_from_at_every_reset() -> None:
     batch = BatchedExploration(num_envs=16, map=["maze:1", "maze:2", "env1"], slam="truth")
     batch.reset(seed=0)
-    assert set(batch._episodes.core.plan) == {0, 1, 2}
+    assert set(batch.episodes.core.plan) == {0, 1, 2}
 
 
 @pytest.mark.parametrize("action", [3, -1, 0.5, np.nan, [0], "0", None, 1.0, True])

@@ -38,7 +38,7 @@ def episode(shift: tuple[float, float, float] | None, **keywords: Any) -> list[d
     """An episode in which, if ``shift`` is given, the true pose is moved whenever the sensors were read."""
     env = ExplorationEnv(map="env3", expose_truth=True, **keywords)
     observation, info = env.reset(seed=0)
-    core = env._episodes.core
+    core = env.episodes.core
     if shift is not None:
         core._perceive = sense_then_filter(core, shift)  # type: ignore[method-assign]
     record = [flat("observation", observation) | flat("info", info)]
@@ -82,7 +82,7 @@ def test_the_estimate_is_not_the_truth_and_the_filter_follows_the_seed() -> None
 
 def test_inner_walls_stop_the_robot() -> None:
     env = ExplorationEnv(map="env1", expose_truth=True, stop_at=None)
-    plan = env._episodes.core.plans[0]
+    plan = env.episodes.core.plans[0]
     for seed in range(6):
         _, info = env.reset(seed=seed)
         rng, ended = np.random.default_rng(seed), False
