@@ -1,6 +1,5 @@
 """Environments and policies from the entries of a comparison file; refusals for what cannot be made."""
 
-import importlib
 from collections.abc import Mapping
 from functools import partial
 from typing import Any
@@ -12,6 +11,7 @@ from lidarena import baselines
 from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.agents.shipped import resolve
 from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.import_names import import_for, import_named
 from lidarena.baselines import Policy
 from lidarena.envs.corridor import SHARED_ID
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
@@ -115,7 +115,7 @@ def check_env_id(env_id: str) -> None:
     """
     module, _, name = env_id.rpartition(":")
     if module:
-        _import(module, f"environment {env_id!r}")
+        import_for(module, f"environment {env_id!r}")
     try:
         gym.spec(name)
     except gym.error.Error as error:
@@ -142,19 +142,7 @@ def check_policy(entry: PolicyEntry) -> None:
 
 def _own_policy(entry: PolicyEntry) -> Any:
     """Look up ``module:callable``."""
-    module_name, _, attribute = entry.name.partition(":")
-    module = _import(module_name, f"policy {entry.name!r}")
-    if not hasattr(module, attribute):
-        public = [name for name in vars(module) if not name.startswith("_")]
-        raise ConfigError(f"policy {entry.name!r}: {module_name!r} has no {attribute!r}{suggest(attribute, public)}")
-    return getattr(module, attribute)
-
-
-def _import(module: str, wanted_by: str) -> Any:
-    try:
-        return importlib.import_module(module)
-    except ModuleNotFoundError as error:
-        raise ConfigError(f"{wanted_by}: there is no module {error.name!r}") from error
+    return import_named(entry.name, f"policy {entry.name!r}")
 
 
 def _first_line(error: Exception) -> str:

@@ -20,7 +20,6 @@ def make_single(**keywords: Any) -> CorridorCentralEnv:
     return CorridorCentralEnv(**{"max_episode_steps": -1, **keywords})
 
 
-
 def refuse_single(**keywords: Any) -> CorridorCentralEnv:
     """Say that robots that share a policy come in batches only.
 

@@ -298,8 +298,6 @@ def raw_env(
 
 
 @takes_keywords_of(CorridorOptions)
-def env(
-    max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]
-) -> AECEnv[str, NDArray[np.float32], Any]:
+def env(max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]) -> AECEnv[str, NDArray[np.float32], Any]:
     """Make the environment in PettingZoo's agent-by-agent form (AEC), by PettingZoo's conversion."""
     return wrappers.OrderEnforcingWrapper(raw_env(max_cycles, **keywords))
