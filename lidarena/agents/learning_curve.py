@@ -19,7 +19,6 @@ COLUMNS = {
     "episode_length": "rollout/ep_len_mean",
     "completeness": "rollout/completeness",
     "success_rate": "rollout/success_rate",
-    "arrival_rate": "rollout/arrival_rate",
     "collision_rate": "rollout/collision_rate",
     "learning_rate": "train/learning_rate",
     "policy_loss": "train/policy_gradient_loss",
@@ -31,8 +30,8 @@ COLUMNS = {
 }
 """Columns of ``progress.csv`` and the names of the same in TensorBoard.
 
-``episode_return`` (undiscounted), ``episode_length`` (steps), ``completeness`` (fraction at the end), ``success_rate``,
-``arrival_rate`` and ``collision_rate`` (fractions) are means over the last ``ppo.stats_window_size`` episodes, empty
+``episode_return`` (undiscounted), ``episode_length`` (steps), ``completeness`` (fraction at the end), ``success_rate``
+and ``collision_rate`` (fractions) are means over the last ``ppo.stats_window_size`` episodes, empty
 while there is none or where the environment does not tell them.
 ``seconds`` is the time that the training has taken, pauses before a ``--resume`` left out.
 """

@@ -143,12 +143,11 @@ _EPISODE_MEANS = {
     "l": "ep_len_mean",
     "completeness": "completeness",
     "success": "success_rate",
-    "arrived": "arrival_rate",
     "collision": "collision_rate",
 }
 """What an ended episode tells, and what its mean is called."""
 _SUMMARY = {"ep_rew_mean": "return {:.1f}", "completeness": "completeness {:.0%}", "success_rate": "success {:.0%}"}
-_SUMMARY |= {"arrival_rate": "arrivals {:.0%}", "collision_rate": "collisions {:.0%}"}
+_SUMMARY |= {"collision_rate": "collisions {:.0%}"}
 
 
 class _Stopped(Exception):  # noqa: N818  not an error: it carries the wish to stop out of Stable-Baselines3's loop

@@ -16,7 +16,7 @@ from lidarena.base.errors import ConfigError
 
 Arrays = dict[str, NDArray[Any]]
 
-_LOGGED = ("completeness", "success", "arrived", "collision")
+_LOGGED = ("completeness", "success", "collision")
 
 
 @runtime_checkable
@@ -105,7 +105,7 @@ class BatchVecEnv(VecEnv):
             "t": round(time.perf_counter() - self._started, 6),
         }
         final = infos.get("final_info", {})
-        episode.update({key: float(final[key][world]) for key in _LOGGED if key in final})
+        episode.update({key: float(np.mean(final[key][world])) for key in _LOGGED if key in final})
         self.episodes += 1
         return {
             "terminal_observation": _fresh(infos["final_obs"][world]),

@@ -134,7 +134,7 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
             self._begin(self._worlds_of(over), None)
             rewards[over], terminated[over], truncated[over] = 0.0, False, False
         self._ended = terminated | truncated
-        observations, endings = self.episodes.observe(), {}
+        observations, endings = self.episodes.observe(), Info()
         if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
             done = self._ended.copy()
             endings = self._endings(observations, done)
@@ -152,7 +152,7 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
         for one in np.flatnonzero(done).tolist():
             final[one] = row_of(observations, one, copy=True)
         last = masked(self.episodes.last_infos(), done)
-        return {"final_obs": final, "_final_obs": done.copy(), "final_info": last, "_final_info": done.copy()}
+        return Info({"final_obs": final, "_final_obs": done.copy(), "final_info": last, "_final_info": done.copy()})
 
     def render(self) -> tuple[NDArray[np.uint8], ...] | None:
         """One picture a world; None without ``render_mode``.

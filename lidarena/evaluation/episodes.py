@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines import Policy
+from lidarena.envs.infos import Info
 from lidarena.envs.registration import family_of
 from lidarena.evaluation.measures.arena import measure_drive
 from lidarena.evaluation.measures.exploration import map_iou
@@ -84,9 +85,9 @@ def policy_seed(seed: int) -> int:
     return int(np.random.SeedSequence((seed, 1)).generate_state(1)[0])
 
 
-def without_truth(info: Mapping[str, Any]) -> dict[str, Any]:
+def without_truth(info: Mapping[str, Any]) -> Info:
     """Return what a policy may see of an ``info``."""
-    return {key: value for key, value in info.items() if key != "truth"}
+    return Info({key: value for key, value in info.items() if key != "truth"})
 
 
 def run_episode(
@@ -150,7 +151,7 @@ def _measures(env: Env, log: "_Log", info: Mapping[str, Any], ending: str) -> di
 
 
 def _ending(terminated: bool, truncated: bool, info: Mapping[str, Any]) -> str:
-    if info.get("collision", False):
+    if np.any(info.get("collision", False)):
         return "collision"
     if terminated:
         return "success"
@@ -183,10 +184,10 @@ class _Log:
             ("estimated", info.get("pose")),
             ("odometry", info.get("odometry_pose")),
         ):
-            position = np.full(2, np.nan) if pose is None else np.array(pose[:2], dtype=np.float64)
-            self.poses.setdefault(key, []).append(position)
-        if "poses" in info:
-            self.team.append(np.array(info["poses"], dtype=np.float64)[:, :2])
+            single = np.full(3, np.nan) if pose is None or np.ndim(pose) != 1 else pose
+            self.poses.setdefault(key, []).append(np.array(single[:2], np.float64))
+        if np.ndim(info.get("pose", 0.0)) == 2:
+            self.team.append(np.array(info["pose"], dtype=np.float64)[:, :2])
 
     def measures(self, info: Mapping[str, Any], ending: str) -> dict[str, float]:
         """Return every measure of the finished episode."""
@@ -194,7 +195,7 @@ class _Log:
             "completeness": self.scalars["completeness"][-1],
             "success": float(ending == "success"),
             "collision": float(ending == "collision"),
-            "path_length": float(info.get("truth", {}).get("path_length", np.nan)),
+            "path_length": float(np.sum(info.get("truth", {}).get("path_length", np.nan))),
             "time": self.scalars["time"][-1],
             "d_optimality": float(geometric_mean(self._after_reset("d_optimality"))),
             "trajectory_error": self._position_error("estimated"),
@@ -236,9 +237,9 @@ def _trace(env: Env, policy: Policy, info: Mapping[str, Any], log: _Log) -> Trac
         true=true[~np.isnan(true).any(axis=1)],
         estimated=estimated[~np.isnan(estimated).any(axis=1)],
         grid=np.array(info["map"], dtype=np.int8) if "map" in info and not log.team else None,
-        goal=np.array(info.get("goals", info.get("goal", [])), np.float64).reshape(-1, 2),
+        goal=np.array(info.get("goal", []), np.float64).reshape(-1, 2),
         team=np.array(log.team) if log.team else np.empty((0, 0, 2)),
-        collided=np.array(info.get("collided", []), np.bool_),
+        collided=np.array(info["collision"] if log.team else [], np.bool_),
         resolution=float(info.get("resolution", 0.05)),
         origin=np.array(info.get("origin", (0.0, 0.0)), dtype=np.float64),
         edges=np.array(plan.edges) if plan is not None else np.empty((0, 4)),

@@ -59,9 +59,9 @@ class ImprovedLidarField:
 
         Args:
             observation: Not read.
-            info: The environment's; ``scan``, ``pose``, ``goal`` and ``robot_radius`` are used.
+            info: The environment's; ``scan``, ``pose``, ``goal`` and ``radius`` are used.
         """
-        pose, radius = info["pose"], float(info["robot_radius"])
+        pose, radius = info["pose"], float(info["radius"])
         new = self._seen.add(hits_of(info, float(np.max(info["scan"])))[0])
         points = self._seen.points()
         away = np.hypot(*(points - pose[:2]).T)

@@ -41,12 +41,12 @@ class TraditionalLidarField:
 
         Args:
             observation: Not read.
-            info: The environment's; ``scan``, ``pose``, ``goal`` and ``robot_radius`` are used.
+            info: The environment's; ``scan``, ``pose``, ``goal`` and ``radius`` are used.
         """
         pose, goal, step = info["pose"], info["goal"], self._heading.step
         points = nearest_of_each(info, float(np.max(info["scan"])))
         away = np.hypot(*(points - pose[:2]).T)
-        radii = np.minimum(float(info["robot_radius"]), _CLOSE * away)  # obstacles, grown by the robot's radius
+        radii = np.minimum(float(info["radius"]), _CLOSE * away)  # obstacles, grown by the robot's radius
         walk = self._downhill(np.column_stack([points, radii]), pose[:2], goal)
         self._heading.show(walk)
         net = float(np.hypot(*(walk[-1] - pose[:2])))

@@ -50,7 +50,7 @@ class PlannedDrive(ABC):
 
         Args:
             observation: Not read.
-            info: The environment's; ``circles``, ``bounds``, ``pose``, ``goal`` and ``robot_radius`` are used.
+            info: The environment's; ``circles``, ``bounds``, ``pose``, ``goal`` and ``radius`` are used.
 
         Raises:
             ConfigError: The environment does not tell the obstacles.

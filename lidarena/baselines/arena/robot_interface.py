@@ -51,7 +51,7 @@ def known_world(name: str, info: dict[str, Any]) -> KnownWorld:
             "'apf_lidar' or 'apf_improved_lidar'"
         )
     circles = np.asarray(info["circles"], np.float64)
-    return KnownWorld(circles, info["bounds"], info["pose"], info["goal"], float(info["robot_radius"]))
+    return KnownWorld(circles, info["bounds"], info["pose"], info["goal"], float(info["radius"]))
 
 
 class HeadingController:

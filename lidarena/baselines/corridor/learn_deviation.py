@@ -51,7 +51,7 @@ def _deviations(env: CorridorEnv, policy: PrioritizedFleet, seed: int) -> Iterat
     planned = np.array([[driving.planned(robot, float(time)) for time in times] for robot in range(2)])
     while len(env.agents) == 2:  # both on their way
         observations, _, _, _, infos = env.step(actions)
-        positions = next(iter(infos.values()))["truth"]["poses"][:, :2]
+        positions = next(iter(infos.values()))["truth"]["pose"][:, :2]
         away = ((planned - positions[:, None]) ** 2).sum(axis=2)
         for one, other in ((0, 1), (1, 0)):
             by_plan = int(np.argmin(away[one]))  # the closest point of the one's path says what time it is

@@ -62,9 +62,8 @@ class Fleet:
         """Return what the environment's last info tells, a dictionary by agent or that of the one controller."""
         if self._central:
             active = ~np.asarray(info["finished"])
-            return FleetState(
-                np.array(info["poses"]), np.array(info["goals"]), active, np.array(info["arrived"]), info["time"]
-            )
+            poses, goals, arrived = (np.array(info[name]) for name in ("pose", "goal", "success"))
+            return FleetState(poses, goals, active, arrived, info["time"])
         if self._last is None:
             nothing = np.zeros(self.robots, np.bool_)
             self._last = FleetState(np.zeros((self.robots, 3)), np.zeros((self.robots, 2)), nothing, nothing, 0.0)
@@ -73,7 +72,7 @@ class Fleet:
         for robot in range(self.robots):
             own = info.get(agent_name(robot))
             if own is not None:
-                poses[robot], goals[robot], arrived[robot] = own["pose"], own["goal"], own["arrived"]
+                poses[robot], goals[robot], arrived[robot] = own["pose"], own["goal"], own["success"]
                 time = own["time"]
         active = np.array([agent_name(robot) in self._env.agents for robot in range(self.robots)])
         self._last = FleetState(poses, goals, active, arrived, time)

@@ -71,9 +71,9 @@ class ArenaEnv(SingleWorld):
 
     ``pose`` (3,), ``goal`` (2,), ``distance`` to it [m], ``scan`` (beams,) ranges [m], ``path_length`` [m],
     ``clearance`` [m], the least distance between the robot and anything on the last step, ``time`` [s], ``collision``,
-    ``success``, ``robot_radius`` [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the world:
-    ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min, x_max,
-    y_max [m]. With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and
+    ``success``, ``radius`` of the robot [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the
+    world: ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min,
+    x_max, y_max [m]. With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and
     ``optimal_time`` (BARN's, [s]; infinite elsewhere), for evaluation.
 
     Gymnasium's own ``SyncVectorEnv`` and ``AsyncVectorEnv`` stack the infos of their worlds, which cannot be done with

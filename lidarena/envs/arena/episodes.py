@@ -122,19 +122,21 @@ class ArenaEpisodes:
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds."""
         core = self.core
-        info: Info = {
-            "pose": core.physics.poses[:, 0].copy(),
-            "goal": core.goals.copy(),
-            "distance": core.measurements.distance.copy(),
-            "scan": core.measurements.scans[:, 0].copy(),
-            "path_length": core.measurements.path_length.copy(),
-            "clearance": core.measurements.gap.copy(),
-            "time": self._steps * core.period,
-            "collision": core.physics.touched.copy(),
-            "success": self._success.copy(),
-            "robot_radius": core.radii.copy(),
-            "reward_terms": {name: term.copy() for name, term in self._terms.items()},
-        }
+        info = Info(
+            {
+                "pose": core.physics.poses[:, 0].copy(),
+                "goal": core.goals.copy(),
+                "distance": core.measurements.distance.copy(),
+                "scan": core.measurements.scans[:, 0].copy(),
+                "path_length": core.measurements.path_length.copy(),
+                "clearance": core.measurements.gap.copy(),
+                "time": self._steps * core.period,
+                "collision": core.physics.touched.copy(),
+                "success": self._success.copy(),
+                "radius": core.radii.copy(),
+                "reward_terms": {name: term.copy() for name, term in self._terms.items()},
+            }
+        )
         known = {"circles": core.circles.copy(), "bounds": core.bounds.copy()}
         if self.options.knowledge == "map":
             info |= known

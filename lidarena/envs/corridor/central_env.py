@@ -62,18 +62,19 @@ class CentralEpisodes:
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds."""
         robots = self.teams.robot_infos()
-        own: Info = {
-            "poses": robots["pose"],
-            "goals": robots["goal"],
-            "remaining": robots["remaining"],
-            "arrived": robots["arrived"],
-            "finished": self.teams.finished.copy(),
-            "collided": robots["collision"],
-            "collision": robots["collision"].any(axis=1),
-            "path_lengths": robots["path_length"],
-            "reward_terms": {name: term.sum(axis=1) for name, term in robots["reward_terms"].items()},
-            "measures": self.teams.measures(),
-        }
+        own = Info(
+            {
+                "pose": robots["pose"],
+                "goal": robots["goal"],
+                "remaining": robots["remaining"],
+                "success": robots["success"],
+                "finished": self.teams.finished.copy(),
+                "collision": robots["collision"],
+                "path_length": robots["path_length"],
+                "reward_terms": {name: term.sum(axis=1) for name, term in robots["reward_terms"].items()},
+                "measures": self.teams.measures(),
+            }
+        )
         return own | self.teams.world_infos()
 
     def last_infos(self) -> Info:
@@ -130,11 +131,12 @@ class CorridorCentralEnv(SingleWorld):
 
     ## Info
 
-    By robot: ``poses`` (robots, 3) as localisation gives them, ``goals`` (robots, 2), ``remaining`` [m], ``arrived``,
-    ``finished``, ``collided``, ``path_lengths`` [m]. Of the team: ``collision``, ``time`` [s], ``reward_terms``,
-    ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), the robots' ``radius``
-    [m]; ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``, ``makespan``
-    and ``mean_time`` [s]. With ``expose_truth=True`` also ``truth``: ``poses`` and ``path_length``.
+    By robot: ``pose`` (robots, 3) as localisation gives it, ``goal`` (robots, 2), ``remaining`` length of the way [m],
+    ``success`` (it has arrived), ``finished``, ``collision``, ``path_length`` [m]. Of the team: ``time`` [s],
+    ``reward_terms``, ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), the
+    robots' ``radius`` [m]; ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``,
+    ``makespan`` and ``mean_time`` [s]. With ``expose_truth=True`` also ``truth``: ``pose`` (robots, 3) and
+    ``path_length`` (robots,).
 
     ## Arguments
 

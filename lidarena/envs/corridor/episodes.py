@@ -168,29 +168,32 @@ class CorridorEpisodes:
     def robot_infos(self) -> Info:
         """What every step tells each robot, as arrays over (worlds, robots)."""
         core = self.core
-        return {
-            "pose": core.measurements.measured.copy(),
-            "goal": core.goals.copy(),
-            "remaining": core.measurements.remaining.copy(),
-            "arrived": self.arrived.copy(),
-            "collision": self.touches > 0,
-            "path_length": core.travelled.copy(),
-            "reward_terms": {name: term.copy() for name, term in self._terms.items()},
-        }
+        return Info(
+            {
+                "pose": core.measurements.measured.copy(),
+                "goal": core.goals.copy(),
+                "remaining": core.measurements.remaining.copy(),
+                "success": self.arrived.copy(),
+                "collision": self.touches > 0,
+                "path_length": core.travelled.copy(),
+                "reward_terms": {name: term.copy() for name, term in self._terms.items()},
+            }
+        )
 
     def world_infos(self) -> Info:
         """What every step tells about a world, as arrays over worlds; ``map`` is one read-only array for all."""
         worlds, grid = len(self.steps), self.core.places.grid
-        info: Info = {
-            "time": self.time,
-            "map": np.broadcast_to(self._map, (worlds, *self._map.shape)),
-            "resolution": np.full(worlds, grid.resolution),
-            "origin": np.tile(np.array(grid.origin), (worlds, 1)),
-            "radius": np.full(worlds, self.options.radius),
-        }
+        info = Info(
+            {
+                "time": self.time,
+                "map": np.broadcast_to(self._map, (worlds, *self._map.shape)),
+                "resolution": np.full(worlds, grid.resolution),
+                "origin": np.tile(np.array(grid.origin), (worlds, 1)),
+                "radius": np.full(worlds, self.options.radius),
+            }
+        )
         if self.options.expose_truth:
-            lengths = self.core.travelled.sum(axis=1)
-            info["truth"] = {"poses": self.core.physics.poses.copy(), "path_length": lengths}
+            info["truth"] = {"pose": self.core.physics.poses.copy(), "path_length": self.core.travelled.copy()}
         return info
 
     def measures(self) -> dict[str, NDArray[np.float64]]:

@@ -98,9 +98,10 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
 
     ## Info
 
-    By agent: ``pose`` (3,) as localisation gives it, ``goal`` (2,), ``remaining`` length of its way [m], ``arrived``,
-    ``collision``, ``path_length`` [m], ``reward_terms``, ``time`` [s]; ``map`` (rows, columns) int8 with 0 free, 100
-    occupied, ``resolution`` [m], ``origin`` (2,), ``radius`` of the robots [m].
+    By agent: ``pose`` (3,) as localisation gives it, ``goal`` (2,), ``remaining`` length of its way [m], ``success``
+    (it has arrived), ``collision``, ``path_length`` [m], ``time`` [s]; ``reward_progress`` and so on, the terms one by
+    one, which ``info["reward_terms"]`` gathers; ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution``
+    [m], ``origin`` (2,), ``radius`` of the robots [m].
 
     ## Arguments
 
@@ -234,9 +235,10 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         return {name: rows[self._numbers[name]] for name in agents}
 
     def _infos(self, agents: list[str]) -> dict[str, Info]:
-        robots, world = self.episodes.robot_infos(), of_world(self.episodes.world_infos(), 0)
-        own = of_world(robots, 0)
-        return {name: of_world(own, self._numbers[name]) | world for name in agents}
+        world, robots = of_world(self.episodes.world_infos(), 0), of_world(self.episodes.robot_infos(), 0)
+        terms = robots.pop("reward_terms")  # one by one: libraries that stack infos of agents take no dictionaries
+        robots |= {f"reward_{name}": term for name, term in terms.items()}
+        return {name: of_world(robots, self._numbers[name]) | world for name in agents}
 
     def show(self, sketch: TeamSketch) -> None:
         """Let a planner's sketch be seen in the picture until the next one."""

@@ -58,12 +58,12 @@ class SharedEpisodes:
 
     def infos(self) -> Info:
         """Nothing: a learner does not look at them, and they take time."""
-        return {}
+        return Info()
 
     def last_infos(self) -> Info:
         """How the episodes ended."""
         robots = self.teams.robot_infos()
-        return {"collision": robots["collision"].ravel(), "arrived": robots["arrived"].ravel()}
+        return Info({name: robots[name].ravel() for name in ("collision", "success")})
 
     def picture(self, world: int) -> None:
         """Nothing is drawn."""

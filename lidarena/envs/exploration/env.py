@@ -86,7 +86,8 @@ class ExplorationEnv(SingleWorld):
 
     ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat],
     ``n_eff``, ``entropy_gmapping`` (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``),
-    ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``odometry_pose`` (3,), ``reward_terms``; ``map``
+    ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``success`` (completeness reached ``stop_at``),
+    ``radius`` of the robot [m], ``odometry_pose`` (3,), ``reward_terms``; ``map``
     (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change),
     ``resolution`` [m], ``origin`` (2,).
     What depends on the truth is ``completeness`` (and with it the reward), ``collision`` (a bumper) and, only with

@@ -1,5 +1,6 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
+import math
 from collections.abc import Iterable, Sequence
 from contextlib import nullcontext
 from typing import Any
@@ -84,11 +85,14 @@ class ExplorationEpisodes:
         before, self._completeness = self._completeness, self.core.completeness
         rewards = self._reward.grade(self._completeness - before)
         terminated = self.core.sensors.collision.copy()
-        if self.options.stop_at is not None:
-            terminated |= self._completeness >= self.options.stop_at
+        terminated |= self._explored()
         if self.recorder is not None:
             self.recorder.record(self.core)
         return rewards, terminated, self._truncated()
+
+    def _explored(self) -> NDArray[np.bool_]:
+        """In which worlds completeness has reached ``stop_at``."""
+        return self._completeness >= (math.inf if self.options.stop_at is None else self.options.stop_at)
 
     def _truncated(self) -> NDArray[np.bool_]:
         """Which worlds have run out of steps, or of patience."""
@@ -116,23 +120,27 @@ class ExplorationEpisodes:
         core = self.core
         view = core.maps.occupancy[:]
         view.flags.writeable = False
-        info: Info = {
-            "completeness": self._completeness.copy(),
-            "pose": core.estimate.copy(),
-            "covariance": core.covariance.copy(),
-            "d_optimality": core.criteria[:, 0].copy(),
-            "entropy": core.criteria[:, 1].copy(),
-            "n_eff": core.criteria[:, 2].copy(),
-            "entropy_gmapping": core.criteria[:, 3].copy(),
-            "path_length": core.sensors.path_length.copy(),
-            "time": self._steps * self.options.decision_period,
-            "collision": core.sensors.collision.copy(),
-            "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
-            "reward_terms": {name: term.copy() for name, term in self._reward.terms.items()},
-            "map": view,
-            "resolution": np.full(core.worlds, RESOLUTION),
-            "origin": core.maps.origin.copy(),
-        }
+        info = Info(
+            {
+                "completeness": self._completeness.copy(),
+                "pose": core.estimate.copy(),
+                "covariance": core.covariance.copy(),
+                "d_optimality": core.criteria[:, 0].copy(),
+                "entropy": core.criteria[:, 1].copy(),
+                "n_eff": core.criteria[:, 2].copy(),
+                "entropy_gmapping": core.criteria[:, 3].copy(),
+                "path_length": core.sensors.path_length.copy(),
+                "time": self._steps * self.options.decision_period,
+                "collision": core.sensors.collision.copy(),
+                "success": self._explored() & ~core.sensors.collision,
+                "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
+                "reward_terms": {name: term.copy() for name, term in self._reward.terms.items()},
+                "map": view,
+                "resolution": np.full(core.worlds, RESOLUTION),
+                "origin": core.maps.origin.copy(),
+                "radius": np.full(core.worlds, core.robot.radius),
+            }
+        )
         if self.options.expose_truth:
             truth = {"pose": core.physics.poses[:, 0].copy(), "path_length": core.sensors.true_path_length.copy()}
             info["truth"] = truth

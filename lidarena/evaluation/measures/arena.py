@@ -62,7 +62,7 @@ def barn_score(success: bool, time: float, optimal_time: float) -> float:
 def _shortest(info: Mapping[str, Any], start: NDArray[np.float64]) -> float:
     """Length of A*'s path [m]; NaN if it finds none."""
     truth = info["truth"]
-    path = astar_path(truth["circles"], start, info["goal"], float(info["robot_radius"]), truth["bounds"])
+    path = astar_path(truth["circles"], start, info["goal"], float(info["radius"]), truth["bounds"])
     return path_length(path) if len(path) else math.nan
 
 

@@ -47,7 +47,7 @@ def drive(
 
 def over_astar(info: dict[str, Any], start: tuple[float, float]) -> float:
     truth = info["truth"]
-    path = astar_path(truth["circles"], start, info["goal"], info["robot_radius"], truth["bounds"])
+    path = astar_path(truth["circles"], start, info["goal"], info["radius"], truth["bounds"])
     return float((info["path_length"] + info["distance"]) / path_length(path))
 
 

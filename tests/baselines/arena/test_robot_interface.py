@@ -12,7 +12,7 @@ INFO = {
     "bounds": np.array([0.0, 0.0, 10.0, 20.0]),
     "pose": np.array([1.0, 2.0, 0.5]),
     "goal": np.array([8.0, 9.0]),
-    "robot_radius": 0.5,
+    "radius": 0.5,
 }
 
 

@@ -64,7 +64,7 @@ def test_a_robot_in_trouble_is_planned_around():
         if "robot_1" in actions:
             actions["robot_1"] = np.zeros(2, np.float32)
         observations, _, _, _, infos = env.step(actions)
-        arrived = infos.get("robot_0", {"arrived": False})["arrived"]
+        arrived = infos.get("robot_0", {"success": False})["success"]
     assert arrived and policy.replans >= 1 and not env.episodes.touches.any()
 
 

@@ -186,7 +186,7 @@ def test_the_map_is_told_only_where_it_is_known() -> None:
 def test_points_get_an_extent_that_a_lidar_sees() -> None:
     _, info = ArenaEnv(arena="gnron").reset(seed=0)
     assert info["circles"].tolist() == [[0.5, 0.0, 0.05]]
-    assert info["robot_radius"] == pytest.approx(0.01)
+    assert info["radius"] == pytest.approx(0.01)
 
 
 def test_families_draw_another_arena_every_time() -> None:

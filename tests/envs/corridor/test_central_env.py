@@ -129,7 +129,7 @@ def test_robots_that_share_a_policy_end_their_episodes_with_their_team():
         observations, rewards, terminated, truncated, infos = envs.step(np.zeros((6, 2), np.float32))
         assert (terminated | truncated).all() == (step == 11) and rewards.shape == (6,)
     assert truncated.all() and infos["final_obs"][5].shape == (44,)
-    assert infos["final_info"]["arrived"].tolist() == [False] * 6
+    assert infos["final_info"]["success"].tolist() == [False] * 6
     team = BatchedCorridor(2, robots=3, places="random")
     assert np.array_equal(team.reset(seed=0)[0].reshape(6, -1), envs.reset(seed=0)[0])
 

@@ -160,10 +160,10 @@ def test_the_infos_of_one_step_do_not_change_with_the_next() -> None:
     step(episodes)
     infos = episodes.robot_infos() | episodes.world_infos()
     kept = {name: np.array(value) for name, value in infos.items() if not isinstance(value, dict)}
-    truth = infos["truth"]["poses"].copy()
+    truth = infos["truth"]["pose"].copy()
     step(episodes)
     assert all(np.array_equal(infos[name], value) for name, value in kept.items())
-    assert np.array_equal(infos["truth"]["poses"], truth) and not np.array_equal(episodes.core.physics.poses, truth)
+    assert np.array_equal(infos["truth"]["pose"], truth) and not np.array_equal(episodes.core.physics.poses, truth)
 
 
 def test_a_state_saved_after_an_arrival_continues_elsewhere_with_the_same_robots_and_can_be_drawn() -> None:

@@ -61,7 +61,7 @@ def test_robots_that_meet_collide_and_stay_where_they_are():
     record = drive(env, (1.0, 0.0))
     rewards, terminated, infos = record[-1][1], record[-1][2], record[-1][4]
     assert terminated == {"robot_0": True, "robot_1": True} and not env.agents
-    assert all(info["collision"] and not info["arrived"] for info in infos.values())
+    assert all(info["collision"] and not info["success"] for info in infos.values())
     assert all(reward < -9 for reward in rewards.values())
     terms = infos["robot_0"]["reward_terms"]
     assert terms["collision"] == -10.0 and sum(terms.values()) == pytest.approx(rewards["robot_0"])
@@ -80,7 +80,7 @@ def test_a_robot_that_arrives_is_rewarded_and_finished():
     env.reset(seed=0)
     record = drive(env, (1.0, 0.0), 12)
     done = next(step for step in record if step[2]["robot_0"])
-    assert done[4]["robot_0"]["arrived"] and done[1]["robot_0"] > 9.5
+    assert done[4]["robot_0"]["success"] and done[1]["robot_0"] > 9.5
     assert env.agents == ["robot_1"]
     progress = sum(step[4]["robot_0"]["reward_terms"]["progress"] for step in record if "robot_0" in step[4])
     assert progress == pytest.approx(0.9, abs=0.15)

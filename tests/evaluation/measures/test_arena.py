@@ -28,7 +28,7 @@ def last_info(success: bool = True, optimal_time: float = math.inf) -> dict[str,
         "time": 40.0,
         "goal": np.array([50.0, 10.5]),
         "distance": 0.5,
-        "robot_radius": 1.0,
+        "radius": 1.0,
         "truth": truth | {"optimal_time": optimal_time},
     }
 
