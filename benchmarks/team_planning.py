@@ -100,7 +100,7 @@ def problems(
 
 
 def conflicting(candidates: Iterator[Problem]) -> Iterator[Problem]:
-    """Those whose independent paths conflict: the only ones the paper counts."""
+    """Those whose independent paths conflict: the only ones that Bennewitz and Burgard count."""
     return (problem for problem in candidates if not solve(problem, "independent_astar").plan.solved)
 
 

@@ -1,9 +1,7 @@
 """Trained policies on disk: weights as safetensors, the rest as JSON, nothing that can run code when it is opened."""
 
 import hashlib
-import importlib.metadata
 import json
-import platform
 from pathlib import Path
 from typing import Any, Literal
 
@@ -21,12 +19,11 @@ from lidarena.agents.shipped import resolve
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.base.errors import PolicyFileError
 from lidarena.base.files import write_bytes, write_text
+from lidarena.base.versions import library_versions
 from lidarena.base.yaml_config import ConfigModel
 
 FORMAT = "lidarena-policy"
 VERSION = 1
-
-_LIBRARIES = ("lidarena", "stable-baselines3", "torch", "gymnasium", "numpy", "numba", "pymunk")
 
 
 class PolicyCard(ConfigModel):
@@ -52,7 +49,7 @@ class PolicyCard(ConfigModel):
     architecture: Architecture
     weights_sha256: str = Field(pattern="^[0-9a-f]{64}$")
     training: dict[str, Any] = Field(default_factory=dict)
-    versions: dict[str, str] = Field(default_factory=dict)
+    versions: dict[str, str | None] = Field(default_factory=dict)
 
 
 def save_policy(
@@ -134,17 +131,6 @@ def load(path: str | Path, env: Any = None, deterministic: bool = True) -> Learn
     if env is not None:
         _check_spaces(policy, env, str(path))
     return policy
-
-
-def library_versions() -> dict[str, str]:
-    """Return the versions of Python and of the libraries that a result depends on."""
-    versions = {"python": platform.python_version()}
-    for library in _LIBRARIES:
-        try:
-            versions[library] = importlib.metadata.version(library)
-        except importlib.metadata.PackageNotFoundError:  # run from a checkout that is not installed
-            versions[library] = "not installed"
-    return versions
 
 
 def _find(path: Path) -> tuple[Path, Path]:

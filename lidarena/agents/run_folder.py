@@ -7,6 +7,7 @@ from lidarena.agents import checkpoint
 from lidarena.agents.learning_curve import FILE as CURVE_FILE
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.base.errors import ConfigError
+from lidarena.base.files import next_free
 from lidarena.base.yaml_config import load_config
 
 POLICY_FILES = ("policy.safetensors", "policy.json")
@@ -87,7 +88,7 @@ def fixed_part(config: TrainingConfig) -> dict[str, Any]:
     return _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
 
 
-def set_aside(folder: Path) -> Path | None:
+def keep_policy(folder: Path) -> Path | None:
     """Move policy and curve of a run that has no checkpoint into a folder of their own, before it begins anew.
 
     Returns:
@@ -96,9 +97,7 @@ def set_aside(folder: Path) -> Path | None:
     kept = [folder / name for name in (*POLICY_FILES, CURVE_FILE) if (folder / name).exists()]
     if not kept:
         return None
-    number = 1
-    while (aside := folder / f"before_{number}").exists():
-        number += 1
+    aside = next_free(folder / "before_")
     aside.mkdir()
     for file in kept:
         file.rename(aside / file.name)

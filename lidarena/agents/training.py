@@ -72,7 +72,7 @@ def train(
             folder = run_folder.claim(config.out, exact_out)
         seconds = checkpoint.restore(start, model, run_folder.fixed_part(config)) if start else 0.0
         if resume is not None and start is None:
-            aside = run_folder.set_aside(folder)
+            aside = run_folder.keep_policy(folder)
             _tell(
                 f"{folder} has no checkpoint and begins anew{f'; what it had is in {aside}' if aside else ''}", progress
             )

@@ -57,5 +57,5 @@ def _take_next(context: Any, counter: Any) -> Any:
 
 
 take_next = cast(Callable[[NDArray[np.int64]], int], intrinsic(_take_next))
-"""``counter[0]`` of a counter (1,), raised by one in the same breath: threads that share it never get the same number.
+"""``counter[0]`` of a counter (1,), raised atomically by one: threads that share it never get the same number.
 Within kernels only."""

@@ -99,7 +99,7 @@ class ComparisonConfig(ConfigModel):
         episodes: Per environment and policy, where the environment's entry does not say otherwise.
         seed: Episode k of every policy runs on seed + k, so that policies meet the same worlds.
         pictures: Draw the first episode of each, an overview and the progress over time (PNG).
-        videos: Film the first episode of each: ``mp4``, ``gif``, or false.
+        videos: Record the first episode of each: ``mp4``, ``gif``, or false.
         out: Folder of the results.
         workers: Processes; one per core if left out.
     """

@@ -1,18 +1,15 @@
 """What a comparison found: one row per environment and policy, `results.json`, and the folder that holds it all."""
 
-import itertools
 import json
 import math
-import os
-import platform
-import shutil
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 from typing import Any
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.files import replace_folder
+from lidarena.base.versions import library_versions
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode
 from lidarena.evaluation.measures.table_columns import BY_NAME, MEASURES, Measure
@@ -25,7 +22,6 @@ from lidarena.evaluation.statistics import (
 )
 
 RESULTS_FILE = "results.json"
-PACKAGES = ("lidarena", "gymnasium", "numba", "numpy", "pymunk", "scipy", "stable-baselines3", "torch")
 
 
 @dataclass(frozen=True)
@@ -128,11 +124,6 @@ def results_document(config: ComparisonConfig, rows: Sequence[Row]) -> dict[str,
     }
 
 
-def library_versions() -> dict[str, str | None]:
-    """Versions of Python and of the packages that a result depends on; None where one is not installed."""
-    return {"python": platform.python_version()} | {name: _version(name) for name in PACKAGES}
-
-
 def write_results(path: Path, config: ComparisonConfig, rows: Sequence[Row]) -> None:
     """Write `results.json`; a number that does not exist is null, since JSON knows no NaN."""
     text = json.dumps(results_document(config, rows), indent=1, allow_nan=False, ensure_ascii=False)
@@ -167,30 +158,8 @@ def write_results_folder(folder: Path, fill: Callable[[Path], None]) -> Path | N
         OSError: The place is not writable or full.
     """
     check_folder(folder)
-    wish, folder = folder, Path(os.path.abspath(folder))
-    temporary = folder.with_name(f".{folder.name}.{os.getpid()}.part")
-    shutil.rmtree(temporary, ignore_errors=True)
-    temporary.mkdir(parents=True)
-    try:
-        fill(temporary)
-        earlier = _set_aside(folder)
-        temporary.rename(folder)
-    finally:
-        shutil.rmtree(temporary, ignore_errors=True)
-    return wish.with_name(earlier.name) if earlier and wish.name else earlier
-
-
-def _set_aside(folder: Path) -> Path | None:
-    """Rename what stands at the place of new results to the next free number."""
-    if not folder.exists():
-        return None
-    if not any(folder.iterdir()):
-        folder.rmdir()
-        return None
-    numbers = (folder.with_name(f"{folder.name}.{number}") for number in itertools.count(1))
-    aside = next(path for path in numbers if not path.exists())
-    folder.rename(aside)
-    return aside
+    earlier = replace_folder(folder, fill)
+    return folder.with_name(earlier.name) if earlier and folder.name else earlier
 
 
 def _metric_document(metric: Metric) -> dict[str, Any]:
@@ -200,10 +169,3 @@ def _metric_document(metric: Metric) -> dict[str, Any]:
 
 def _or_null(value: float) -> float | None:
     return float(value) if math.isfinite(value) else None
-
-
-def _version(package: str) -> str | None:
-    try:
-        return version(package)
-    except PackageNotFoundError:
-        return None

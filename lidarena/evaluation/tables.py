@@ -1,4 +1,4 @@
-"""The tables of a comparison: CSV for programs, Markdown and LaTeX for papers, rich text for the terminal."""
+"""The tables of a comparison: CSV for programs, Markdown and LaTeX for manuscripts, rich text for the terminal."""
 
 import csv
 import io

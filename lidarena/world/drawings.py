@@ -1,4 +1,4 @@
-"""The four circuits of the active-SLAM paper, drawn once.
+"""The four circuits of DA-SLAM (Alcalde et al. 2022), drawn once.
 
 Yang et al. (Alcalde et al., "DA-SLAM") prints outer sizes and one sentence on each; its pictures are not public. These
 drawings keep the sizes and the sentences. All have their lower-left outer corner at (0, 0), walls 0.1 m thick whose

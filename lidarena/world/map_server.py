@@ -2,7 +2,6 @@
 
 import math
 import os
-import tempfile
 from collections.abc import Mapping
 from dataclasses import dataclass
 from difflib import get_close_matches
@@ -14,6 +13,7 @@ import yaml
 from numpy.typing import NDArray
 
 from lidarena.base.errors import MapError
+from lidarena.base.files import write_bytes
 from lidarena.world.extent import check_extent, check_resolution
 from lidarena.world.picture import read_picture
 
@@ -155,7 +155,7 @@ def save_map(
     grey[(grid >= 0) & (grid <= 25)] = FREE_GREY
     grey[grid >= 65] = OCCUPIED_GREY
     header = f"P5\n{grid.shape[1]} {grid.shape[0]}\n255\n".encode()
-    _write(picture, header + grey[::-1].tobytes())
+    write_bytes(picture, header + grey[::-1].tobytes())
     entries = {
         "image": picture.name,
         "mode": "trinary",
@@ -165,7 +165,9 @@ def save_map(
         "occupied_thresh": OCCUPIED_THRESH,
         "free_thresh": FREE_THRESH,
     }
-    _write(description, yaml.safe_dump(entries, sort_keys=False, default_flow_style=None, allow_unicode=True).encode())
+    write_bytes(
+        description, yaml.safe_dump(entries, sort_keys=False, default_flow_style=None, allow_unicode=True).encode()
+    )
     return description
 
 
@@ -209,16 +211,3 @@ def _origin(value: object, where: str) -> Pose:
     if not all(math.isfinite(part) and abs(part) < 1e6 for part in (x, y, yaw)):
         raise MapError(f"{where} has origin {value!r}; finite numbers below a million are needed")
     return (x, y, yaw)
-
-
-def _write(file: Path, data: bytes) -> None:
-    """Write to a temporary name first, so that a file is either whole or the old one."""
-    handle, temporary = tempfile.mkstemp(dir=file.parent, prefix=file.name)
-    try:
-        with os.fdopen(handle, "wb") as stream:
-            stream.write(data)
-        os.chmod(temporary, 0o644)
-        os.replace(temporary, file)
-    except BaseException:
-        os.unlink(temporary)
-        raise

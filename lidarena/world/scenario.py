@@ -1,4 +1,4 @@
-"""Scenario files of the MovingAI benchmarks for teams (Stern et al. 2019): who starts where and goes where."""
+"""TeamScenario files of the MovingAI benchmarks for teams (Stern et al. 2019): who starts where and goes where."""
 
 import os
 from pathlib import Path
@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lidarena.base.errors import ScenarioError
 
 
-class Scenario(NamedTuple):
+class TeamScenario(NamedTuple):
     """Starts and goals, (k, 2) [row, column] each, with row 0 at the smallest y as in ``load_movingai``."""
 
     starts: NDArray[np.int64]
@@ -19,7 +19,7 @@ class Scenario(NamedTuple):
 
 def load_scenario(
     path: str | os.PathLike[str], free: NDArray[np.bool_], robots: int | None = None, map_name: str | None = None
-) -> Scenario:
+) -> TeamScenario:
     """Read the first robots of a ``.scen`` file.
 
     Args:
@@ -53,7 +53,7 @@ def load_scenario(
             f"{where} has the {('start', 'goal')[kind]} of robot {robot} at x = {x}, y = {y},"
             " which is a wall of this map"
         )
-    return Scenario(ends[:, 0].copy(), ends[:, 1].copy())
+    return TeamScenario(ends[:, 0].copy(), ends[:, 1].copy())
 
 
 def _read_entry(

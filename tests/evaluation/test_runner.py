@@ -101,7 +101,7 @@ def test_a_process_that_dies_becomes_a_sentence() -> None:
         run_tasks(tasks, workers=2)
 
 
-def test_the_rehearsal_finds_refusals_and_failures() -> None:
+def test_the_dry_run_finds_refusals_and_failures() -> None:
     dry_run(config_of(*TWO))
     with pytest.raises(
         LidarenaError, match="'Corridor', policy 'driver': there is no keyword 'slipp'; did you mean 'slip'"
@@ -111,7 +111,7 @@ def test_the_rehearsal_finds_refusals_and_failures() -> None:
         dry_run(config_of({"name": f"{HERE}:Driver", "options": {"fail_at": 30}, "label": "lost"}))
 
 
-def test_the_rehearsal_is_short() -> None:
+def test_the_dry_run_is_short() -> None:
     dry_run(config_of({"name": f"{HERE}:Driver", "options": {"fail_at": 31}}))
 
 

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
-from lidarena.baselines.arena.chord_follower import PathFollower
+from lidarena.baselines.arena.chord_follower import ChordFollower
 from lidarena.baselines.arena.robot_interface import HeadingController
 from lidarena.baselines.arena.seen_obstacles import SeenObstacles, hits_of
 from lidarena.baselines.registry import register
@@ -51,7 +51,7 @@ class ImprovedLidarField:
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; nothing here is random."""
         self._seen = SeenObstacles(_CELL * self._heading.step)
-        self._follower: PathFollower | None = None
+        self._follower: ChordFollower | None = None
         self.plans = 0
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
@@ -70,7 +70,7 @@ class ImprovedLidarField:
             discs = np.column_stack([points, np.minimum(radius, _CLOSE * away)])
             path = self._search(discs, pose[:2], info["goal"])
             self._heading.show(path)
-            self._follower = PathFollower(path, self._heading.step, discs)
+            self._follower = ChordFollower(path, self._heading.step, discs)
             self.plans += 1
         return self._heading.towards(self._follower.heading(pose), pose)
 

@@ -97,7 +97,7 @@ def is_free(
     return True
 
 
-class PathFollower:
+class ChordFollower:
     """Follows one path.
 
     Args:

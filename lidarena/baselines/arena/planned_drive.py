@@ -6,7 +6,7 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.baselines.arena.chord_follower import NO_WALLS, PathFollower
+from lidarena.baselines.arena.chord_follower import NO_WALLS, ChordFollower
 from lidarena.baselines.arena.robot_interface import HeadingController, KnownWorld, known_world
 from lidarena.planning.potential_field.disc_clearance import segment_is_free
 
@@ -41,7 +41,7 @@ class PlannedDrive(ABC):
 
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; nothing here is random."""
-        self._follower: PathFollower | None = None
+        self._follower: ChordFollower | None = None
         self.finished = self._ends_early = False
         self.path = np.empty((0, 2))
 
@@ -61,7 +61,7 @@ class PlannedDrive(ABC):
             self._heading.show(self.path, self.before)
             self._ends_early = self._stops_short(world)
             discs, walls = world.grown() if self.guarded else (np.empty((0, 3)), NO_WALLS)
-            self._follower = PathFollower(self.path, self._heading.step, discs, walls)
+            self._follower = ChordFollower(self.path, self._heading.step, discs, walls)
         pose = info["pose"]
         heading = self._follower.heading(pose)
         self.finished = self._ends_early and self._follower.at_end(pose)

@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.files import write_text
 
 MODEL_FILE = Path(__file__).parent / "data" / "deviation.json"
 """The model that comes with the package; ``python -m lidarena.baselines.corridor.learn_deviation`` learns it anew."""
@@ -93,8 +94,7 @@ class DeviationModel:
     def save(self, path: Path) -> None:
         """Write the model as JSON."""
         content = {"runs": self.runs, "bin": BIN, "counts": self.counts.tolist(), "knots": self.knots.tolist()}
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_text(json.dumps(content, indent=1) + "\n", encoding="utf-8")
+        write_text(path, json.dumps(content, indent=1) + "\n")
 
     @classmethod
     def load(cls, path: Path) -> "DeviationModel":

@@ -150,7 +150,7 @@ class ArenaCore:
         self.physics.place(world, plan, [pose], spec)
 
     def _meet(self, world: int) -> None:
-        """Tell the solver of what a robot can reach in a step, and of nothing else: that is soon told."""
+        """Give the solver only the obstacles that a robot can reach in a step, so that it has few to check."""
         scenario = self.scenarios[world]
         assert scenario is not None
         x, y, theta = self.physics.poses[world, 0].tolist()

@@ -164,7 +164,7 @@ def frontier_histogram(
 
 
 def mean_direction(edge: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The mean direction of what ``frontier_histogram`` says, as a compass needle shows it.
+    """The mean direction of what ``frontier_histogram`` says, as a unit vector mapped into [0, 1]².
 
     Args:
         edge: (worlds, sectors), not negative.
@@ -173,13 +173,13 @@ def mean_direction(edge: NDArray[np.float32]) -> NDArray[np.float32]:
         (worlds, 2) in [0, 1]: (1 + x) / 2 and (1 + y) / 2, x ahead and y to the left, of the mean of the sectors'
         directions weighted by ``edge``; shorter than a unit where they disagree, 0.5 and 0.5 where all are 0.
     """
-    needles = np.empty((len(edge), 2), np.float32)
-    _point(edge, needles)
-    return needles
+    arrow = np.empty((len(edge), 2), np.float32)
+    _point(edge, arrow)
+    return arrow
 
 
 @leaf
-def _point(edge: NDArray[np.float32], needles: NDArray[np.float32]) -> None:
+def _point(edge: NDArray[np.float32], arrow: NDArray[np.float32]) -> None:
     """A loop: NumPy's product of matrices would round a world's sum as the size of the batch has it."""
     sectors = edge.shape[1]
     for w in range(edge.shape[0]):
@@ -190,5 +190,5 @@ def _point(edge: NDArray[np.float32], needles: NDArray[np.float32]) -> None:
             y += edge[w, k] * math.sin(angle)
             total += edge[w, k]
         scale = 0.5 / total if total > 0.0 else 0.0
-        needles[w, 0] = min(max(0.5 + scale * x, 0.0), 1.0)
-        needles[w, 1] = min(max(0.5 + scale * y, 0.0), 1.0)
+        arrow[w, 0] = min(max(0.5 + scale * x, 0.0), 1.0)
+        arrow[w, 1] = min(max(0.5 + scale * y, 0.0), 1.0)

@@ -78,7 +78,7 @@ class CompassObserver(PaperObserver):
 
     First how near the nearest hit in each sector is, ``START_CLEARANCE`` over the range: a wall far off, which says
     little, hardly shows, whereas the range itself differs most there. Then how much of the map's edge each sector leads
-    to, see ``frontier_histogram``, and their mean direction like a compass needle, (1 + cos) / 2 and (1 + sin) / 2.
+    to, see ``frontier_histogram``, and their mean direction as (1 + cos) / 2 and (1 + sin) / 2.
     """
 
     looks = 2 * SECTORS + 2

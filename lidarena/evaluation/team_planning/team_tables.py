@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
-from lidarena.evaluation.results import RESULTS_FILE, check_folder, library_versions, write_results_folder
+from lidarena.base.versions import library_versions
+from lidarena.evaluation.results import RESULTS_FILE, check_folder, write_results_folder
 from lidarena.evaluation.statistics import Interval, bootstrap, share_interval
 from lidarena.evaluation.team_planning.team_experiment import METHODS, Outcome, TeamExperimentConfig, run_experiments
 

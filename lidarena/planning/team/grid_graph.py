@@ -86,7 +86,7 @@ def _flood_costs(
                 size = push(keys, items, size, new, there)
 
 
-class Workspace:
+class ReservationTables:
     """Arrays of a size that is expensive to allocate, for one team at a time; see ``reservations`` and ``route``.
 
     Args:
@@ -140,7 +140,7 @@ class GridGraph:
         self.at = ((self.cells[:, 0] + margin) * self.stride + self.cells[:, 1] + margin).astype(np.int32)
         self.padded = padded.ravel()
         self._ahead: dict[int, NDArray[np.int32]] = {}
-        self._spare: list[Workspace] = []
+        self._spare: list[ReservationTables] = []
 
     def __len__(self) -> int:
         """Number of places."""
@@ -150,18 +150,18 @@ class GridGraph:
         """The place of a cell [row, column]; -1 where the robot cannot stand."""
         return int(self.index[cell[0], cell[1]])
 
-    def borrow(self, times: int) -> Workspace:
-        """A workspace with empty tables for at least ``times`` steps, which nobody else has."""
+    def borrow(self, times: int) -> ReservationTables:
+        """Empty tables for at least ``times`` steps, which nobody else has."""
         try:
             spare = self._spare.pop()
         except IndexError:
-            return Workspace(len(self), times)
-        return spare if spare.times >= times else Workspace(len(self), times)
+            return ReservationTables(len(self), times)
+        return spare if spare.times >= times else ReservationTables(len(self), times)
 
-    def give_back(self, workspace: Workspace) -> None:
-        """Keep a workspace, its tables empty again, for the next team."""
+    def give_back(self, tables: ReservationTables) -> None:
+        """Keep tables, empty again, for the next team."""
         if len(self._spare) < _KEPT_WORKSPACES:
-            self._spare.append(workspace)
+            self._spare.append(tables)
 
     def ahead(self, goal: int) -> NDArray[np.int32]:
         """What the shortest way from every place to ``goal`` costs (n,), in units; ``UNREACHABLE`` without a way.

@@ -220,8 +220,8 @@ class Traffic:
         self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
         self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
-        self._workspace = graph.borrow(self.capacity)
-        work = self._workspace
+        self._tables = graph.borrow(self.capacity)
+        work = self._tables
         self.table, self.until, self.since = work.table, work.until, work.since
         self.nodes, self.keys, self.items, self.limits = work.nodes, work.keys, work.items, work.limits
         self.limits[:2] = NO_BOUND
@@ -247,7 +247,7 @@ class Traffic:
             self.paths,
             self.lengths,
         )
-        self.graph.give_back(self._workspace)
+        self.graph.give_back(self._tables)
 
     @property
     def _arrays(self) -> tuple[Any, ...]:

@@ -237,7 +237,7 @@ class _Run:
     def past(self) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Which scans (K,) were processed, and the poses (K, 3) of the likeliest particle's ancestors then."""
         state = self.filters.state
-        # the last resampling gave survivors equal weights: count the heirs of each particle before it
+        # the last resampling gave survivors equal weights: count the descendants of each particle before it
         particle = int(np.bincount(state.ancestors[0], weights=state.weights[0]).argmax())
         poses = np.empty((len(self.processed), 3))
         for node in range(len(self.processed) - 1, -1, -1):

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.files import write_bytes, write_folder, write_text
+from lidarena.base.files import replace_folder, write_bytes, write_text
 from lidarena.slam.logs.carmen import LogError, RecordedLog
 from lidarena.slam.logs.relations import RelationErrors
 from lidarena.slam.logs.replay import Replay
@@ -57,7 +57,6 @@ def save_replay(
         OSError: The disk is full or the place is not writable; what was there is left as it was.
     """
     check_folder(folder)
-    place = Path(os.path.abspath(folder))  # "." has no name of its own
     picture = io.BytesIO()
     draw_replay(log, result).savefig(picture, format="png")
 
@@ -67,11 +66,7 @@ def save_replay(
         write_bytes(there / "picture.png", picture.getvalue())
         write_text(there / "results.json", json.dumps(results(result, errors), indent=2) + "\n")
 
-    whole = place.with_name(f".{place.name}.{os.getpid()}.new")
-    write_folder(whole, fill)
-    earlier = _set_aside(place)
-    os.replace(whole, place)
-    return earlier
+    return replace_folder(os.fspath(folder), fill)
 
 
 def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, Any]:
@@ -87,17 +82,3 @@ def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, A
 
 def _moments(values: NDArray[np.float64]) -> dict[str, float]:
     return {"mean": float(values.mean()), "std": float(values.std())}
-
-
-def _set_aside(place: Path) -> Path | None:
-    """Move an earlier folder to the next free number; an empty one is just removed."""
-    if not place.exists():
-        return None
-    if not any(place.iterdir()):
-        place.rmdir()
-        return None
-    number = 1
-    while (earlier := place.with_name(f"{place.name}.{number}")).exists():
-        number += 1
-    os.replace(place, earlier)
-    return earlier

@@ -31,7 +31,7 @@ class FilterParameters(NamedTuple):
         starts: Sampled motions that are tried before the first particle is matched.
         turned_starts: How many steps of 0.03 rad to each side of the odometry are tried, too; for wheels that are read
             too early or too late in a turn.
-        stride: Every how manyth point of a scan is used; which ones, changes from scan to scan.
+        stride: One of so many points of a scan is used; which ones, changes from scan to scan.
         noise: The odometry's noise, per reading.
         points: How points are made of a scan.
         matcher: The scan matcher's settings.

@@ -53,7 +53,7 @@ def extract_points(
         max_range: [m].
         parameters: Settings.
         first: First averaged point that is wanted.
-        stride: Every how manyth from there on; the normals come from all.
+        stride: From there on one of so many; the normals come from all.
         means: (beams, 2) work space, the averaged points.
         surface: (beams,) work space, number of the unbroken surface that each lies on.
         points: (blocks, 5, BLOCK) output in the sensor's frame: x, y [m], unit normal towards the sensor (where

@@ -4,14 +4,14 @@ import math
 import numpy as np
 import pytest
 
-from lidarena.baselines.arena.chord_follower import PathFollower
+from lidarena.baselines.arena.chord_follower import ChordFollower
 
 NOTHING = np.empty((0, 3))
 
 
 def follow(path: np.ndarray, step: float, discs: np.ndarray = NOTHING, most: int = 600) -> np.ndarray:
     """The places that a follower steps to, until it is at the end."""
-    follower, place, places = PathFollower(path, step, discs), path[0].astype(float), [path[0].astype(float)]
+    follower, place, places = ChordFollower(path, step, discs), path[0].astype(float), [path[0].astype(float)]
     while not follower.at_end(place) and len(places) < most:
         heading = follower.heading(place)
         place = place + step * np.array([math.cos(heading), math.sin(heading)])
@@ -49,7 +49,7 @@ def test_a_chord_that_would_cut_into_an_obstacle_is_turned_aside() -> None:
 
 def test_walls_are_kept_off() -> None:
     path = np.array([[1.0, 1.0], [9.0, 1.0], [9.0, 9.0]])
-    follower = PathFollower(path, 1.0, NOTHING, np.array([0.0, 0.0, 9.2, 9.2]))
+    follower = ChordFollower(path, 1.0, NOTHING, np.array([0.0, 0.0, 9.2, 9.2]))
     place = np.array([8.6, 1.0])
     heading = follower.heading(place)
     assert place[0] + math.cos(heading) < 9.2
@@ -58,18 +58,18 @@ def test_walls_are_kept_off() -> None:
 def test_a_robot_that_nothing_lets_pass_drives_on_as_wanted() -> None:
     ring = np.linspace(0, 2 * np.pi, 40)
     discs = np.column_stack([0.6 * np.cos(ring), 0.6 * np.sin(ring), np.full(40, 0.2)])
-    follower = PathFollower(np.array([[0.0, 0.0], [9.0, 0.0]]), 1.0, discs)
+    follower = ChordFollower(np.array([[0.0, 0.0], [9.0, 0.0]]), 1.0, discs)
     assert follower.heading(np.zeros(2)) == pytest.approx(0.0)
 
 
 def test_a_path_of_one_point_is_at_its_end() -> None:
-    follower = PathFollower(np.array([[3.0, 4.0]]), 1.0, NOTHING)
+    follower = ChordFollower(np.array([[3.0, 4.0]]), 1.0, NOTHING)
     follower.heading(np.array([3.0, 4.0]))
     assert follower.at_end(np.array([3.0, 4.0]))
 
 
 def test_only_what_lies_ahead_blocks_the_path() -> None:
-    follower = PathFollower(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]]), 1.0, NOTHING)
+    follower = ChordFollower(np.array([[0.0, 0.0], [5.0, 0.0], [5.0, 5.0]]), 1.0, NOTHING)
     disc = np.array([[0.2, 0.1, 0.15]])
     assert follower.is_blocked(disc)
     assert not follower.is_blocked(np.array([[2.0, 1.0, 0.9]]))

@@ -134,7 +134,7 @@ def test_a_robot_that_cut_a_corner_or_need_not_step_aside_any_more_goes_on() -> 
     assert driving.completed.tolist() == [6, 6]
 
 
-def test_a_robot_that_has_arrived_hinders_nobody_and_is_told_nothing() -> None:
+def test_a_robot_that_has_arrived_blocks_nobody_and_is_told_nothing() -> None:
     driving = ordered(crossing())
     poses = np.stack([driving.curves[0][-1], driving.curves[1][0]])
     state = still(poses, arrived=(0,))

@@ -77,7 +77,7 @@ def slope(rows: int = 9, cols: int = 12) -> tuple[NDArray[np.float32], Ground]:
     return field, Ground(empty, np.zeros(2), 1.0, np.array([-1.0, 2.0]), 0.5)
 
 
-def test_the_carrot_lies_some_cells_ahead_on_the_way() -> None:
+def test_the_lookahead_point_lies_some_cells_ahead_on_the_way() -> None:
     field, ground = slope()
     lookahead_point = np.empty(2)
     length = distance_to_goal(field, np.array([-0.75, 4.25]), 4.25, 4.25, ground, 0.0, lookahead_point)
@@ -85,7 +85,7 @@ def test_the_carrot_lies_some_cells_ahead_on_the_way() -> None:
     assert lookahead_point[0] == pytest.approx(4.25 - 0.5 * (LOOK_AHEAD + 1))
 
 
-def test_near_the_goal_the_way_is_straight_and_the_carrot_is_the_goal() -> None:
+def test_near_the_goal_the_way_is_straight_and_the_lookahead_point_is_the_goal() -> None:
     field, ground = slope()
     goal, lookahead_point = np.array([1.0, 4.0]), np.empty(2)
     assert distance_to_goal(field, goal, 1.6, 4.7, ground, 0.0, lookahead_point) == pytest.approx(math.hypot(0.6, 0.7))
@@ -101,7 +101,7 @@ def test_where_no_way_begins_the_length_stays_what_it_was(point: tuple[float, fl
     assert lookahead_point.tolist() == goal.tolist()
 
 
-def disturbed(
+def noisy_motion(
     command: tuple[float, float], noise: MotionNoise, stall_rate: float = 0.0, steps: int = 1500, robots: int = 40
 ) -> Floats:
     """What wheels do (steps, robots, 2) when told the same over and over."""
@@ -115,22 +115,22 @@ def disturbed(
 
 
 def test_wheels_without_noise_do_what_they_are_told() -> None:
-    record = disturbed((0.37, -1.1), MotionNoise().scaled(0.0), steps=5)
+    record = noisy_motion((0.37, -1.1), MotionNoise().scaled(0.0), steps=5)
     assert (record == np.array([0.37, -1.1])).all()
 
 
 def test_a_robot_that_is_told_to_stand_stands() -> None:
-    assert not disturbed((0.0, 0.0), MotionNoise().scaled(10.0), steps=50).any()
+    assert not noisy_motion((0.0, 0.0), MotionNoise().scaled(10.0), steps=50).any()
 
 
 def test_noise_turns_no_robot_round() -> None:
-    assert (disturbed((0.5, 0.0), MotionNoise().scaled(10.0), steps=100)[..., 0] >= 0.0).all()
-    assert (disturbed((-0.5, 0.0), MotionNoise().scaled(10.0), steps=100)[..., 0] <= 0.0).all()
+    assert (noisy_motion((0.5, 0.0), MotionNoise().scaled(10.0), steps=100)[..., 0] >= 0.0).all()
+    assert (noisy_motion((-0.5, 0.0), MotionNoise().scaled(10.0), steps=100)[..., 0] <= 0.0).all()
 
 
 def test_speeds_and_turn_rates_scatter_as_the_model_says() -> None:
     noise = MotionNoise(speed_bias=0.15, memory=4.0, speed=0.1, turn=0.1, yaw_noise=0.15)
-    record = disturbed((0.5, 1.0), noise)[200:]  # the errors begin at 0 here
+    record = noisy_motion((0.5, 1.0), noise)[200:]  # the errors begin at 0 here
     assert record[..., 0].mean() == pytest.approx(0.5, rel=0.03)
     assert record[..., 0].std() == pytest.approx(0.5 * math.hypot(0.15, 0.1), rel=0.08)
     assert record[..., 1].mean() == pytest.approx(1.0, abs=0.01)
@@ -142,7 +142,7 @@ def test_speeds_and_turn_rates_scatter_as_the_model_says() -> None:
 
 
 def test_robots_stall_as_often_and_as_long_as_the_model_says() -> None:
-    still = disturbed((0.5, 0.3), MotionNoise().scaled(0.0), stall_rate=0.1)[..., 0] == 0.0
+    still = noisy_motion((0.5, 0.3), MotionNoise().scaled(0.0), stall_rate=0.1)[..., 0] == 0.0
     begun = (still[1:] & ~still[:-1]).sum()
     moving = (~still[:-1]).sum() * PERIOD
     assert begun / moving == pytest.approx(0.1, rel=0.1)

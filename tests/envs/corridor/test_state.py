@@ -111,7 +111,7 @@ def test_scans_and_poses_scatter_around_the_truth() -> None:
     assert (core.measurements.scans <= np.float32(3.5)).all() and (core.measurements.scans >= 0.0).all()
 
 
-def test_robots_begin_at_rest_on_their_starts_and_look_along_their_way() -> None:
+def test_robots_begin_at_rest_on_their_starts_facing_along_their_way() -> None:
     episodes = begin(4, map="unstructured", robots=6, **EXACT)
     core = episodes.core
     assert np.array_equal(core.physics.poses[..., :2], core.starts) and not core.measurements.velocity.any()

@@ -26,7 +26,7 @@ def line(x0, y0, x1, y1, n=30):
     return np.stack([np.linspace(x0, x1, n), np.linspace(y0, y1, n)], axis=1)
 
 
-def carrot_of(around, path, pose, lookahead=1.5, margin=0.18):
+def lookahead_of(around, path, pose, lookahead=1.5, margin=0.18):
     return lookahead_point(path, np.array(pose, float), around.gap, around.closed, around.frame, lookahead, margin)
 
 
@@ -86,25 +86,25 @@ def test_turns_round_at_the_end_of_a_dead_end():
     assert math.dist(back[-1, :2], (1.5, 1.2)) < 0.3
 
 
-def test_carrot_is_the_farthest_point_in_sight():
+def test_the_lookahead_point_is_the_farthest_point_in_sight():
     _, around = world("######", "#    #", "#    #", "######", side=20)
     path = np.vstack([line(1.5, 1.5, 3.5, 1.5, 21), line(3.6, 1.5, 4.4, 1.5, 9)])
-    assert path[carrot_of(around, path, (1.5, 1.5, 0.0))] == pytest.approx((3.0, 1.5))
-    assert carrot_of(around, path, (1.5, 1.5, 0.0), lookahead=100.0) == len(path) - 1
-    assert path[carrot_of(around, path, (2.0, 1.7, 0.0))] == pytest.approx((3.5, 1.5))
+    assert path[lookahead_of(around, path, (1.5, 1.5, 0.0))] == pytest.approx((3.0, 1.5))
+    assert lookahead_of(around, path, (1.5, 1.5, 0.0), lookahead=100.0) == len(path) - 1
+    assert path[lookahead_of(around, path, (2.0, 1.7, 0.0))] == pytest.approx((3.5, 1.5))
 
 
-def test_carrot_stays_near_where_the_path_bends_behind_a_wall():
+def test_the_lookahead_point_stays_near_where_the_path_bends_behind_a_wall():
     _, around = world("######", "#    #", "## ###", "## ###", "######", side=16)
     path = np.vstack([line(2.0, 1.2, 2.0, 2.8, 33), line(2.05, 2.8, 3.9, 2.8, 38)])
-    chosen = path[carrot_of(around, path, (2.0, 1.6, math.pi / 2), lookahead=3.0)]
+    chosen = path[lookahead_of(around, path, (2.0, 1.6, math.pi / 2), lookahead=3.0)]
     assert chosen[0] < 2.6 and chosen[1] > 2.5
 
 
-def test_carrot_goes_on_even_if_nothing_is_in_sight():
+def test_the_lookahead_point_goes_on_even_if_nothing_is_in_sight():
     _, around = world("#####", "# # #", "#####", side=16)
     path = line(1.2, 1.2, 2.8, 1.2, 17)
-    assert path[carrot_of(around, path, (1.2, 1.2, 0.0))] == pytest.approx((1.6, 1.2))
+    assert path[lookahead_of(around, path, (1.2, 1.2, 0.0))] == pytest.approx((1.6, 1.2))
 
 
 def test_path_is_found_blocked_only_where_it_still_leads():

@@ -77,7 +77,7 @@ def test_commands_are_driven_as_arcs(pose: tuple[float, float, float], sequence:
     assert tightest(*arrays, np.array(pose), CONTINUOUS.moves, commands) == pytest.approx(min(gaps, default=math.inf))
 
 
-def slow_carrot(path: np.ndarray, position: Point, lookahead: float, margin: float) -> int:
+def slow_lookahead(path: np.ndarray, position: Point, lookahead: float, margin: float) -> int:
     away = np.hypot(*(path - position).T)
     nearest = int(np.flatnonzero(away == away.min())[-1])
     along = np.concatenate([[0.0], np.cumsum(np.hypot(*np.diff(path[nearest:], axis=0).T))])
@@ -92,11 +92,13 @@ def slow_carrot(path: np.ndarray, position: Point, lookahead: float, margin: flo
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 10**6), POINT, st.sampled_from([0.5, 1.5]), st.sampled_from([0.0, 0.15]))
-def test_a_carrot_is_the_last_point_in_sight(seed: int, position: Point, lookahead: float, margin: float) -> None:
+def test_a_lookahead_point_is_the_last_point_in_sight(
+    seed: int, position: Point, lookahead: float, margin: float
+) -> None:
     rng = np.random.default_rng(seed)
     path = np.cumsum(rng.normal((0.03, 0.01), 0.06, (40, 2)), axis=0) + rng.uniform((0, 0), (3, 2))
     found = lookahead_point(path, np.array(position), HALL.gap, HALL.closed, HALL.frame, lookahead, margin)
-    assert found == slow_carrot(path, position, lookahead, margin)
+    assert found == slow_lookahead(path, position, lookahead, margin)
 
 
 @settings(max_examples=60, deadline=None)

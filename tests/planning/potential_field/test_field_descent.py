@@ -48,7 +48,7 @@ def test_the_walk_follows_the_force_in_steps_of_gamma():
 def test_without_filling_a_trap_ends_the_walk():
     path, _, end = run(trap(200, 15, 0.8), (0, 0), GOAL, "traditional")
     assert end == "trapped"
-    assert math.dist(path[-1], (15, 15)) < 1.5  # the trap that the paper speaks of
+    assert math.dist(path[-1], (15, 15)) < 1.5  # the trap that Yang et al. describe
 
 
 def test_a_fill_lies_in_the_trap_and_has_its_strength():

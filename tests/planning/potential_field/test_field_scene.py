@@ -67,7 +67,7 @@ def test_start_and_goal_stay_free_whatever_is_kept(seed: int, robot: float, clea
 
 
 def test_what_a_robot_touches_does_not_grow() -> None:
-    """A start in the corner of its room, as the paper's, has no clearance from two walls and keeps none."""
+    """A start in the corner of its room, as Yang et al.'s, has no clearance from two walls and keeps none."""
     scene = make_scene([(5, 5, 1)], (0, 0), (9, 3), 0.0, (0, 0, 10, 10))
     discs, walls = scene.keeping(2.0)
     assert walls.tolist() == [0.0, 0.0, 10 - 0.999, 10 - 2.0]

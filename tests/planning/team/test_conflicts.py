@@ -38,7 +38,7 @@ CORRIDOR = GridGraph(np.zeros((1, 12), bool), 4, 0.0)
 
 @settings(max_examples=60, deadline=None)
 @given(st.integers(0, 2**32 - 1), st.integers(0, 5))
-def test_hinderers_are_those_whom_the_straight_way_meets(seed: int, begin: int) -> None:
+def test_blocking_agents_are_those_whom_the_straight_way_meets(seed: int, begin: int) -> None:
     """In a corridor there is one shortest way, so that nothing is left to chance."""
     rng = np.random.default_rng(seed)
     lengths = np.concatenate([[5], rng.integers(0, 8, 3)])

@@ -100,7 +100,7 @@ def test_a_place_is_the_number_of_its_cell() -> None:
 
 
 @pytest.mark.parametrize(("first", "second", "same"), [(30, 30, True), (30, 20, True), (20, 30, False)])
-def test_a_workspace_is_lent_again_if_it_is_large_enough(first: int, second: int, same: bool) -> None:
+def test_tables_are_lent_again_if_it_is_large_enough(first: int, second: int, same: bool) -> None:
     found = GridGraph(np.zeros((3, 3), bool), 4, 0.0)
     one = found.borrow(first)
     found.give_back(one)
@@ -108,11 +108,11 @@ def test_a_workspace_is_lent_again_if_it_is_large_enough(first: int, second: int
     assert (other is one) == same and other.times >= second
 
 
-def test_nobody_shares_a_workspace_and_few_are_kept() -> None:
+def test_nobody_shares_tables_and_few_are_kept() -> None:
     found = GridGraph(np.zeros((3, 3), bool), 4, 0.0)
     lent = [found.borrow(10) for _ in range(4)]
     assert all(a is not b for a, b in itertools.combinations(lent, 2))
-    for workspace in lent:
-        found.give_back(workspace)
+    for tables in lent:
+        found.give_back(tables)
     again = [found.borrow(10) for _ in range(4)]
     assert sum(any(a is b for b in lent) for a in again) == 2

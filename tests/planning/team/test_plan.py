@@ -94,7 +94,7 @@ def test_robots_that_keep_to_their_paths_cannot_pass_each_other():
 
 
 def test_the_one_that_fails_moves_to_the_front():
-    """Robot b is in a dead end that a, whose way is longer, wants to enter (the paper's Fig. 17)."""
+    """Robot b is in a dead end that a, whose way is longer, wants to enter (Bennewitz and Burgard, Fig. 17)."""
     problem = parse(
         """
         B..@@@@@@@@

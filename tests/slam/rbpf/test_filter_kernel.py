@@ -125,7 +125,7 @@ def test_the_points_that_are_matched_are_spread_evenly_over_those_with_a_normal(
 @pytest.mark.parametrize(
     ("weights", "parents", "best"),
     [
-        ([0.2, 0.5, 0.3], [0, 0, 0], 1),  # nobody but heirs of the published particle: the likeliest
+        ([0.2, 0.5, 0.3], [0, 0, 0], 1),  # only descendants of the published particle: the likeliest
         ([0.2, 0.5, 0.3], [0, 1, 0], 2),  # its likeliest descendant, since the best is not three times as likely
         ([0.2, 0.7, 0.1], [0, 1, 1], 1),  # … and here it is
         ([0.1, 0.3, 0.6], [1, 2, 2], 2),  # no descendant is left

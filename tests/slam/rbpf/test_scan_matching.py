@@ -166,7 +166,7 @@ def test_every_second_point_is_one_of_all() -> None:
 
 @settings(max_examples=25, deadline=None)
 @given(st.floats(0.05, 0.3), st.floats(-3, 3))
-def test_the_misfit_is_least_where_the_scan_was_taken(away: float, direction: float) -> None:
+def test_the_match_cost_is_least_where_the_scan_was_taken(away: float, direction: float) -> None:
     points, _ = scan_of(ROOM, TRUE)
     fields, origin = empty_fields(1, 1, 112, 512), np.array([-1.0, -1.0])
     register_points(fields, 0, 0, TRUE, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
