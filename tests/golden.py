@@ -1,13 +1,19 @@
 """Golden episodes: every family driven for a while, and a digest of all bits that came out."""
 
 import hashlib
+import json
+import math
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
+import llvmlite.binding
 import numpy as np
+from numba import njit
 
 import lidarena
+from lidarena.base.versions import library_versions
 from lidarena.envs import corridor_v0
 from lidarena.planning import plan_team
 from lidarena.planning.potential_field import plan_path
@@ -183,3 +189,42 @@ CASES: dict[str, Callable[[], str]] = {
     "plan_team": _plans,
     "plan_path": _field_plan,
 }
+
+
+RECORDED = Path(__file__).with_name("golden.json")
+"""The digests of ``CASES``, and the arithmetic that they were recorded with."""
+
+
+@njit
+def _compiled(x: Any) -> Any:
+    out = np.empty((6, len(x)))
+    for k in range(len(x)):
+        out[0, k], out[1, k], out[2, k] = math.sin(x[k]), math.cos(x[k]), math.atan2(x[k], 0.3)
+        out[3, k], out[4, k], out[5, k] = math.exp(x[k]), math.log(abs(x[k]) + 1e-9), math.hypot(x[k], 0.7)
+    return out
+
+
+def arithmetic() -> dict[str, str]:
+    """What the bits of an episode depend on beside the source: the processor, its mathematics and the libraries."""
+    x, digest = np.random.default_rng(0).uniform(-9.0, 9.0, 4096), Digest()
+    digest.add(_compiled(x))
+    for values in (x, x.astype(np.float32)):
+        for function in (np.sin, np.cos, np.exp, np.tanh, np.arctan, np.sqrt):
+            digest.add(function(values))
+        digest.add(np.hypot(values, values[::-1]))
+        digest.add(values.sum())
+        digest.add(values.reshape(64, 64) @ values.reshape(64, 64).T)
+    digest.add(np.linalg.eigvalsh(np.cov(x[:4095].reshape(3, -1))))
+    versions = {name: str(version) for name, version in library_versions(("numpy", "numba", "pymunk", "scipy")).items()}
+    del versions["python"]
+    return {"processor": llvmlite.binding.get_host_cpu_name(), "mathematics": digest.text(), **versions}
+
+
+def record() -> None:
+    """Write ``golden.json`` anew."""
+    content = {"arithmetic": arithmetic(), "digests": {name: case() for name, case in CASES.items()}}
+    RECORDED.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+
+
+if __name__ == "__main__":  # python -m tests.golden: after a fault was mended that changes bits
+    record()
