@@ -9,7 +9,26 @@ comparison = compare(load_config("configs/compare/exploration.yaml", ComparisonC
 from lidarena.evaluation.comparison import Comparison, compare
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode, run_episode
+from lidarena.evaluation.measures.family_measures import FamilyMeasures
+from lidarena.evaluation.measures.table_columns import Measure
+from lidarena.evaluation.picture import Picture
+from lidarena.evaluation.progress_curve import ProgressCurve
+from lidarena.evaluation.recording import Recording
 from lidarena.evaluation.results import Metric, Row
 from lidarena.evaluation.runner import EpisodeError
 
-__all__ = ["Comparison", "ComparisonConfig", "Episode", "EpisodeError", "Metric", "Row", "compare", "run_episode"]
+__all__ = [
+    "Comparison",
+    "ComparisonConfig",
+    "Episode",
+    "EpisodeError",
+    "FamilyMeasures",
+    "Measure",
+    "Metric",
+    "Picture",
+    "ProgressCurve",
+    "Recording",
+    "Row",
+    "compare",
+    "run_episode",
+]

@@ -30,7 +30,7 @@ class Comparison:
         rows: One per environment and policy, in the order of the file.
         folder: Where everything was written.
         pictures: The PNG files.
-        videos: The films.
+        videos: The video files.
         earlier: Where earlier results of the same name were moved, if there were any.
     """
 

@@ -10,14 +10,15 @@ import lidarena  # noqa: F401  registers the environments, also in a spawned wor
 from lidarena import baselines
 from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.agents.shipped import resolve
-from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.errors import ConfigError, LidarenaError, suggest
 from lidarena.base.import_names import import_for, import_named
 from lidarena.baselines import Policy
 from lidarena.envs.corridor import SHARED_ID
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
+from lidarena.evaluation.recording import Env
 
-Env = gym.Env[Any, Any]
-
+TRUTH = "expose_truth"
+"""Keyword of environments that tell an evaluation what no policy may see."""
 AGENT_KEYWORDS = ("observation", "reward", "action", "beams", "lidar_range", "neighbours")
 """Keywords of the environments that change what an observation or an action means."""
 
@@ -70,16 +71,27 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
 
 
 def make_env(env_id: str, keywords: Mapping[str, Any], render_mode: str | None = None) -> Env:
-    """Make an environment with the truth exposed to the evaluation.
+    """Make an environment, with the truth exposed to the evaluation if it has any to expose.
 
     Raises:
         ConfigError: There is no such environment or keyword.
     """
     check_env_id(env_id)
-    given = {**keywords, "expose_truth": True} | ({} if render_mode is None else {"render_mode": render_mode})
+    given = dict(keywords) | ({} if render_mode is None else {"render_mode": render_mode})
     try:
-        env: Env = gym.make(env_id, disable_env_checker=True, **given)
-    except (TypeError, gym.error.Error) as error:
+        return _made(env_id, given | {TRUTH: True})
+    except ConfigError as refusal:
+        if TRUTH not in str(refusal):
+            raise
+    return _made(env_id, given)
+
+
+def _made(env_id: str, keywords: Mapping[str, Any]) -> Env:
+    try:
+        env: Env = gym.make(env_id, disable_env_checker=True, **keywords)
+    except LidarenaError:
+        raise
+    except (TypeError, ValueError, ImportError, gym.error.Error) as error:
         raise ConfigError(f"environment {env_id!r} cannot be made: {_first_line(error)}") from error
     return env
 

@@ -12,7 +12,7 @@ from lidarena.base.files import replace_folder
 from lidarena.base.versions import library_versions
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode
-from lidarena.evaluation.measures.table_columns import BY_NAME, MEASURES, Measure
+from lidarena.evaluation.measures.table_columns import Measure
 from lidarena.evaluation.statistics import (
     Interval,
     bootstrap,
@@ -34,12 +34,26 @@ class Metric:
 
 @dataclass(frozen=True)
 class Row:
-    """An environment and a policy."""
+    """An environment and a policy.
+
+    Attributes:
+        env: What tables call the environment.
+        policy: What tables call the policy.
+        episodes: Number of them.
+        columns: Of the environment's family, in the order of the table.
+        metrics: By the columns' names, without those that no episode reported.
+    """
 
     env: str
     policy: str
     episodes: int
+    columns: tuple[Measure, ...]
     metrics: dict[str, Metric]
+
+    @property
+    def measured(self) -> list[Measure]:
+        """The columns that hold something."""
+        return [measure for measure in self.columns if measure.name in self.metrics]
 
 
 def summarise(env: str, policy: str, episodes: Sequence[Episode]) -> Row:
@@ -54,26 +68,26 @@ def summarise(env: str, policy: str, episodes: Sequence[Episode]) -> Row:
         The row, without the measures that no episode reported.
     """
     metrics = {}
-    for measure in MEASURES:
+    columns = episodes[0].columns
+    for measure in columns:
         values = tuple(episode.measures.get(measure.name, math.nan) for episode in episodes)
         if not all(math.isnan(value) for value in values):
             interval = share_interval(values) if measure.share else bootstrap(values)
             metrics[measure.name] = Metric(interval, values)
-    return Row(env, policy, len(episodes), metrics)
+    return Row(env, policy, len(episodes), columns, metrics)
 
 
 def contenders(rows: Sequence[Row], measure: Measure) -> list[Row]:
     """Return the rows of one environment among which a measure may be compared.
 
-    Where `Measure.needs_coverage`, those are the rows whose completeness cannot be told from the best one: a policy
-    that crashes at once drives the shortest path, and that is no merit. `Measure.needs_success` is the same for
-    success.
+    Where a measure ``needs`` another, those are the rows whose mean of that one cannot be told from the best: a policy
+    that crashes at once drives the shortest path, and that is no merit.
     """
     measured = [row for row in rows if measure.name in row.metrics]
-    needed = "completeness" if measure.needs_coverage else "success" if measure.needs_success else None
-    if needed is None or not all(needed in row.metrics for row in measured):
+    needed = next((column for row in measured for column in row.columns if column.name == measure.needs), None)
+    if needed is None or not all(needed.name in row.metrics for row in measured):
         return measured
-    return level_with_best(measured, BY_NAME[needed])
+    return level_with_best(measured, needed)
 
 
 def best(rows: Sequence[Row], measure: Measure) -> set[str]:

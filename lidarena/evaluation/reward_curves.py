@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from lidarena.agents.learning_curve import FILE
 from lidarena.base.errors import ConfigError, LidarenaError
-from lidarena.evaluation.pictures import LINES
+from lidarena.evaluation.palette import LINES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -10,8 +10,9 @@ from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
-from typing import Any, NoReturn
+from typing import Any, NoReturn, TypeVar
 
 import cv2
 import numba
@@ -20,9 +21,11 @@ from lidarena.base.errors import LidarenaError
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
 from lidarena.evaluation.participants import make_participants
+from lidarena.evaluation.picture import Picture
 from lidarena.evaluation.videos import VideoRecorder
 
-REHEARSED_STEPS = 30
+DRY_RUN_STEPS = 30
+Outcome = TypeVar("Outcome")
 THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 
 
@@ -42,16 +45,16 @@ class Task:
         env: The environment.
         policy: The policy.
         seed: Of the environment.
-        keep_trace: Keep what pictures need.
-        film: File of the video, if one is wanted.
+        keep_picture: Keep what pictures need.
+        video: File of the video, if one is wanted.
         max_steps: Stop here; None leaves it to the environment.
     """
 
     env: EnvEntry
     policy: PolicyEntry
     seed: int
-    keep_trace: bool = False
-    film: Path | None = None
+    keep_picture: bool = False
+    video: Path | None = None
     max_steps: int | None = None
 
     def __str__(self) -> str:
@@ -68,7 +71,7 @@ class _Failure:
 
 
 def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
-    """Return every episode of a comparison; the first of each environment and policy is drawn and filmed.
+    """Return every episode of a comparison; the first of each environment and policy is drawn and recorded.
 
     The first is fixed before anything is known about it: a picture of the best one would be advertising.
 
@@ -81,8 +84,8 @@ def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
         for policy in config.policies:
             for seed in config.seeds(env):
                 first = seed == config.seed
-                film = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
-                tasks.append(Task(env, policy, seed, config.pictures and first, film))
+                video = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
+                tasks.append(Task(env, policy, seed, config.pictures and first, video))
     return tasks
 
 
@@ -94,14 +97,27 @@ def place_of(env: EnvEntry, policy: PolicyEntry, suffix: str) -> Path:
 def dry_run(config: ComparisonConfig) -> None:
     """Run the first steps of every policy in every environment, so that mistakes show within seconds.
 
-    It also compiles what the policies call, once instead of in every worker, and before anything is timed.
+    It also compiles what the policies call, once instead of in every worker, and before anything is timed; and it draws
+    what came of it onto nothing, so that a family's picture fails now or never.
 
     Raises:
         LidarenaError: A keyword, map, option or agent is refused.
         EpisodeError: Something else went wrong.
     """
     pairs = [(env, policy) for env in config.envs for policy in config.policies]
-    run_tasks([Task(env, policy, config.seed, max_steps=REHEARSED_STEPS) for env, policy in pairs], workers=1)
+    tasks = [Task(env, policy, config.seed, config.pictures, max_steps=DRY_RUN_STEPS) for env, policy in pairs]
+    for task, episode in zip(tasks, run_tasks(tasks, workers=1), strict=True):
+        if episode.picture is not None:
+            failure = _guarded(partial(_try_picture, episode.picture))
+            if isinstance(failure, _Failure):
+                _raise(task, failure)
+
+
+def _try_picture(picture: Picture) -> None:
+    from matplotlib.figure import Figure
+
+    picture.bounds()
+    picture.draw(Figure().add_subplot())
 
 
 def run_tasks(
@@ -143,7 +159,7 @@ def available_cores() -> int:
 
 def _in_this_process(tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Failure]]:
     for index, task in enumerate(tasks):
-        yield index, _guarded(task)
+        yield index, _guarded(partial(_run, task))
 
 
 @contextmanager
@@ -164,7 +180,7 @@ def _prepare_worker() -> None:
 
 
 def _as_they_end(pool: ProcessPoolExecutor, tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Failure]]:
-    futures = {pool.submit(_guarded, task): index for index, task in enumerate(tasks)}
+    futures = {pool.submit(_guarded, partial(_run, task)): index for index, task in enumerate(tasks)}
     try:
         for future in as_completed(futures):
             yield futures[future], future.result()
@@ -175,10 +191,10 @@ def _as_they_end(pool: ProcessPoolExecutor, tasks: Sequence[Task]) -> Iterator[t
         ) from error
 
 
-def _guarded(task: Task) -> Episode | _Failure:
-    """Run a task; whatever it raises comes back as text."""
+def _guarded(work: Callable[[], Outcome]) -> Outcome | _Failure:
+    """Do it; whatever it raises comes back as text."""
     try:
-        return _run(task)
+        return work()
     except LidarenaError as refusal:
         return _Failure(str(refusal), traceback.format_exc(), refused=True)
     except Exception as error:
@@ -194,14 +210,14 @@ def _raise(task: Task, failure: _Failure) -> NoReturn:
 
 
 def _run(task: Task) -> Episode:
-    env, policy = make_participants(task.env.of_episode(task.seed), task.policy, "rgb_array" if task.film else None)
+    env, policy = make_participants(task.env.of_episode(task.seed), task.policy, "rgb_array" if task.video else None)
     try:
         _limit_threads(1)
-        how: dict[str, Any] = {"max_steps": task.max_steps, "keep_trace": task.keep_trace}
-        if task.film is None:
+        how: dict[str, Any] = {"max_steps": task.max_steps, "keep_picture": task.keep_picture}
+        if task.video is None:
             return run_episode(env, policy, task.seed, **how)
-        with VideoRecorder(task.film) as film:
-            return run_episode(env, policy, task.seed, film=film.add, **how)
+        with VideoRecorder(task.video) as recorder:
+            return run_episode(env, policy, task.seed, record=recorder.add, **how)
     finally:
         env.close()
 

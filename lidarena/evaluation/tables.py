@@ -11,19 +11,11 @@ from rich.console import Group
 from rich.table import Table
 from rich.text import Text
 
-from lidarena.evaluation.measures.table_columns import MEASURES, Measure
+from lidarena.evaluation.measures.table_columns import Measure, merged
 from lidarena.evaluation.results import Row, best, contenders, difference
 from lidarena.evaluation.statistics import LEAST_SAMPLES, Interval
 
 ABSENT = "–"
-NOTE = (
-    f"Mean over episodes and its 95% interval (BCa bootstrap, from {LEAST_SAMPLES} episodes on; Wilson's and "
-    "Newcombe's for shares). Policies met the same seeds. Bold: the best, and what cannot be told from it by paired "
-    "differences. Path, time, D-optimality and pose error are compared only among policies that explored as much as "
-    "the best; they count every episode, also those cut short by a collision. In arenas path, clearance and "
-    "turning are those of the episodes that reached the goal, compared among policies that reach it as often as the "
-    "best."
-)
 LATEX_SIGNS = {
     "\\": r"\textbackslash{}",
     **{sign: f"\\{sign}" for sign in "&%$#_{}"},
@@ -41,6 +33,25 @@ LATEX_SIGNS = {
 def by_env(rows: Sequence[Row]) -> list[list[Row]]:
     """Return the rows of each environment, in the order of the comparison."""
     return [list(group) for _, group in groupby(rows, key=lambda row: row.env)]
+
+
+def note(rows: Sequence[Row]) -> str:
+    """Return what has to be said beneath the tables: what the intervals are, and what is compared with what."""
+    sentences = [
+        f"Mean over episodes and its 95% interval (BCa bootstrap, from {LEAST_SAMPLES} episodes on; Wilson's and "
+        "Newcombe's for shares). Policies met the same seeds. Bold: the best, and what cannot be told from it by "
+        "paired differences."
+    ]
+    measures = _measured(rows)
+    for needed in measures:
+        titles = [measure.title for measure in measures if measure.needs == needed.name]
+        if titles:
+            verb = "are" if titles[1:] else "is"
+            sentences.append(
+                f"{_listed(titles)} {verb} compared only among policies whose {needed.title!r} cannot be told from the "
+                "best, and counted in every episode that has a value."
+            )
+    return " ".join(sentences)
 
 
 def interval_text(interval: Interval, measure: Measure, signed: bool = False) -> tuple[str, str]:
@@ -69,7 +80,7 @@ def csv_text(rows: Sequence[Row]) -> str:
     writer = csv.writer(stream, lineterminator="\n")
     writer.writerow(["env", "policy", "episodes", "measure", "unit", "mean", "ci_low", "ci_high"])
     for row in rows:
-        for measure in _measured([row]):
+        for measure in row.measured:
             numbers = ["" if math.isnan(number) else number for number in row.metrics[measure.name].interval]
             writer.writerow([row.env, row.policy, row.episodes, measure.name, measure.stored_unit, *numbers])
     return stream.getvalue()
@@ -90,7 +101,7 @@ def markdown_text(rows: Sequence[Row]) -> str:
         if len(group) > 1:
             sections.append(f"Difference from {_cell(group[0].policy)}, seed by seed:\n")
             sections.append(_markdown_differences(group))
-    return "\n".join([*sections, NOTE]) + "\n"
+    return "\n".join([*sections, note(rows)]) + "\n"
 
 
 def latex_text(rows: Sequence[Row]) -> str:
@@ -108,7 +119,10 @@ def latex_text(rows: Sequence[Row]) -> str:
             cells = [_latex_cell(row, measure, group) for measure in measures]
             env = _latex(f"{row.env} ({_episodes(group)})") if place == 0 else ""
             lines.append(" & ".join([env, _latex(row.policy), *cells]) + r" \\")
-    return "\n".join([*lines, r"\bottomrule", r"\end{tabular}", *(f"% {line}" for line in NOTE.split(". "))]) + "\n"
+    return (
+        "\n".join([*lines, r"\bottomrule", r"\end{tabular}", *(f"% {line}" for line in _latex(note(rows)).split(". "))])
+        + "\n"
+    )
 
 
 def terminal_table(rows: Sequence[Row], width: int = 80) -> Group:
@@ -134,7 +148,12 @@ def terminal_table(rows: Sequence[Row], width: int = 80) -> Group:
 
 
 def _measured(rows: Sequence[Row]) -> list[Measure]:
-    return [measure for measure in MEASURES if any(measure.name in row.metrics for row in rows)]
+    return merged(row.measured for row in rows)
+
+
+def _listed(names: Sequence[str]) -> str:
+    """Such as ``"Path, Time and Map IoU"``."""
+    return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
 
 
 def _episodes(group: Sequence[Row]) -> str:
@@ -143,7 +162,7 @@ def _episodes(group: Sequence[Row]) -> str:
 
 def _interval(row: Row, measure: Measure) -> Interval:
     metric = row.metrics.get(measure.name)
-    return metric.interval if metric else Interval(math.nan, math.nan, math.nan)
+    return metric.interval if metric and measure in row.columns else Interval(math.nan, math.nan, math.nan)
 
 
 def _decimals(half: float, mean: float) -> int:

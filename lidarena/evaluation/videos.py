@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from PIL import Image
 
 from lidarena.base.errors import ConfigError
-from lidarena.evaluation.participants import Env
+from lidarena.evaluation.recording import Env
 
 SPEED = 8
 """How many times faster than the simulated time a video plays."""

@@ -20,6 +20,7 @@ class Corridor(gym.Env[Any, Any]):
     """Actions: 0 forward 0.1 m, 1 back 0.1 m, 2 crash."""
 
     metadata = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012
+    family = "exploration"
 
     def __init__(self, expose_truth: bool = False, render_mode: str | None = None, **keywords: Any) -> None:
         for key in keywords.keys() - KEYWORDS.keys():
@@ -85,6 +86,7 @@ class Corridor(gym.Env[Any, Any]):
             "path_length": 0.0,
             "time": 0.2 * self._steps,
             "collision": self._crashed,
+            "success": not self._crashed and self._completeness() >= self.keywords["stop_at"],
             "map": view,
             "resolution": 0.05,
             "origin": np.zeros(2),

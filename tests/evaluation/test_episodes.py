@@ -7,8 +7,9 @@ import pytest
 
 from lidarena import baselines
 from lidarena.evaluation.episodes import policy_seed, run_episode, without_truth
-from lidarena.evaluation.measures.table_columns import names_for
+from lidarena.evaluation.measures.exploration import MEASURES
 from lidarena.evaluation.participants import make_env
+from lidarena.evaluation.trace import RobotTrace
 from tests.evaluation.fake_world import Crasher, Driver
 
 CORRIDOR = "tests.evaluation.fake_world:fake/Corridor-v0"
@@ -45,7 +46,7 @@ def test_measures_of_a_known_episode() -> None:
     episode = run_episode(env, Driver(env, back=0.0), seed=3)
     steps = 35  # from 0.3 m in steps of 0.1 m to 99.5% of 3.8 m
     values = episode.measures
-    assert set(values) == names_for("exploration")
+    assert list(values) == [column.name for column in MEASURES.table] and episode.columns == MEASURES.table
     assert episode.seed == 3 and episode.ending == "success"
     assert (values["success"], values["collision"], values["steps"]) == (1.0, 0.0, steps)
     assert values["completeness"] == pytest.approx(1.0)
@@ -61,21 +62,23 @@ def test_measures_of_a_known_episode() -> None:
 
 def test_the_environment_may_reuse_its_arrays() -> None:
     env = make_env(CORRIDOR, {})
-    trace = run_episode(env, Driver(env), seed=1, keep_trace=True).trace
-    assert trace is not None
+    trace = run_episode(env, Driver(env), seed=1, keep_picture=True).picture
+    assert isinstance(trace, RobotTrace)
     assert len(np.unique(trace.true[:, 0])) > 20
     assert trace.true.shape == trace.estimated.shape
     assert np.abs(trace.true - trace.estimated).max() > 0
-    assert trace.grid is not None and trace.grid.flags.owndata
-    assert trace.edges.shape == (8, 4) and trace.circles.shape == (1, 3)
+    assert trace.belief is not None and trace.belief.cells.flags.owndata
+    assert trace.walls.edges.shape == (8, 4) and trace.walls.circles.shape == (1, 3)
 
 
 def test_progress_has_an_entry_per_step_and_one_for_the_reset() -> None:
     env = make_env(CORRIDOR, {})
     episode = run_episode(env, Driver(env), seed=1)
-    assert episode.progress.shape == (episode.measures["steps"] + 1, 2)
-    assert (np.diff(episode.progress[:, 0]) > 0).all() and (np.diff(episode.progress[:, 1]) >= 0).all()
-    assert episode.trace is None
+    assert episode.progress is not None
+    points = episode.progress.points
+    assert points.shape == (episode.measures["steps"] + 1, 2)
+    assert (np.diff(points[:, 0]) > 0).all() and (np.diff(points[:, 1]) >= 0).all()
+    assert episode.picture is None
 
 
 def test_a_collision_is_no_success() -> None:
@@ -123,9 +126,9 @@ def test_steps_can_be_limited() -> None:
 
 def test_an_environment_without_truth_leaves_out_what_needs_it() -> None:
     env = make_env(CORRIDOR, {"truth": False})
-    episode = run_episode(env, Driver(env), seed=0, keep_trace=True)
+    episode = run_episode(env, Driver(env), seed=0, keep_picture=True)
     assert np.isnan([episode.measures[name] for name in ("path_length", "trajectory_error", "odometry_error")]).all()
-    assert episode.trace is not None and episode.trace.true.shape == (0, 2)
+    assert isinstance(episode.picture, RobotTrace) and episode.picture.true.shape == (0, 2)
 
 
 def test_the_same_seed_gives_the_same_episode_and_another_one_another() -> None:
@@ -150,10 +153,10 @@ def test_policy_and_environment_draw_from_different_streams() -> None:
 def test_the_camera_sees_every_state() -> None:
     env = make_env(CORRIDOR, {}, "rgb_array")
     frames: list[Any] = []
-    episode = run_episode(env, Driver(env), seed=0, film=lambda env: frames.append(env.render()))
+    episode = run_episode(env, Driver(env), seed=0, record=lambda env: frames.append(env.render()))
     assert len(frames) == episode.measures["steps"] + 1
     finished: list[int] = []
-    run_episode(env, Driver(env, finish_at=3), seed=0, film=lambda env: finished.append(1))
+    run_episode(env, Driver(env, finish_at=3), seed=0, record=lambda env: finished.append(1))
     assert len(finished) == 3
 
 

@@ -113,6 +113,12 @@ def test_a_misspelt_keyword_is_refused() -> None:
         make_env(CORRIDOR.id, {"slipp": 0.1})
 
 
-def test_an_environment_that_takes_no_truth_is_refused_in_one_sentence() -> None:
-    with pytest.raises(ConfigError, match=r"'CartPole-v1' cannot be made: .*expose_truth"):
-        make_env("CartPole-v1", {})
+def test_an_environment_that_takes_no_truth_is_made_without() -> None:
+    env = make_env("CartPole-v1", {"max_episode_steps": 7})
+    assert env.spec is not None and env.spec.max_episode_steps == 7
+
+
+def test_an_environment_that_cannot_be_made_is_refused_in_one_sentence() -> None:
+    with pytest.raises(ConfigError, match=r"^environment 'CartPole-v1' cannot be made: .*unexpected.*'mass'") as caught:
+        make_env("CartPole-v1", {"mass": 3})
+    assert "expose_truth" not in str(caught.value) and "\n" not in str(caught.value)

@@ -11,14 +11,15 @@ from PIL import Image
 from lidarena.baselines import make
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import run_episode
-from lidarena.evaluation.pictures import Cell, caption, draw_pictures, overview, progress, progress_band, single
-from tests.evaluation.rows import episode_of, trace_of
+from lidarena.evaluation.pictures import Cell, draw_pictures, overview, progress, single
+from lidarena.evaluation.trace import TeamTrace, Walls
+from tests.evaluation.rows import SQUARE, episode_of, trace_of
 
 VALUES = {"completeness": 0.97, "path_length": 31.24, "time": 105.2}
 
 
 def cell_of(policy: str, env: str = "Env-1", ending: str = "success", speed: float = 0.1, **shape: bool) -> Cell:
-    first = episode_of(0, VALUES, ending, speed, trace_of(**shape))
+    first = episode_of(0, VALUES, ending, speed, trace_of(crashed=ending == "collision", **shape))
     others = [episode_of(k, VALUES, ending, speed * (1 + 0.05 * k)) for k in (1, 2)]
     return Cell(EnvEntry(id=env), PolicyEntry(name=policy), [first, *others])
 
@@ -43,8 +44,7 @@ def test_all_pictures_are_drawn(tmp_path: Path) -> None:
 def test_without_traces_there_are_no_maps(tmp_path: Path) -> None:
     bare = Cell(EnvEntry(id="Env-1"), PolicyEntry(name="random"), [episode_of(0, VALUES)])
     assert [path.name for path in draw_pictures([[bare]], tmp_path)] == ["progress.png"]
-    without_time = episode_of(0, VALUES)
-    without_time.progress[:] = np.nan
+    without_time = replace(episode_of(0, VALUES), progress=None)
     nothing = Cell(EnvEntry(id="Env-1"), PolicyEntry(name="random"), [without_time])
     assert draw_pictures([[nothing]], tmp_path) == []
 
@@ -81,36 +81,15 @@ def test_the_overview_has_a_panel_each_and_equal_limits_in_a_row() -> None:
     assert "Env-2" in figure.axes[2].get_ylabel()
 
 
-def test_progress_keeps_the_last_value_and_its_band_contains_the_mean() -> None:
-    episodes = [episode_of(k, VALUES, speed=speed) for k, speed in enumerate((0.02, 0.05, 0.1))]
-    times = np.array([0.0, 5.0, 10.0, 99.0])
-    mean, low, high = progress_band(episodes, times)
-    np.testing.assert_allclose(mean, np.mean([0.02, 0.05, 0.1]) * np.minimum(times, 10), atol=1e-6)
-    assert (low <= mean + 1e-12).all() and (mean <= high + 1e-12).all() and low[2] < high[2]
-
-
 def test_progress_has_a_panel_per_environment() -> None:
     figure = progress([[cell_of("random", env)] for env in ("Env-1", "Env-2", "Env-3", "Env-4")])
     assert [axes.get_title() for axes in figure.axes][:4] == [f"Env-{k} (3 episodes each)" for k in (1, 2, 3, 4)]
 
 
-@pytest.mark.parametrize(
-    ("values", "text"),
-    [
-        (VALUES, "explored 97% in 31.2 m, 105 s: success"),
-        ({"completeness": np.nan, "path_length": 3.0, "time": np.nan}, "3.0 m: success"),
-        ({"completeness": 0.5, "path_length": np.nan, "time": np.nan}, "explored 50%: success"),
-        ({"completeness": np.nan, "path_length": np.nan, "time": np.nan}, "success"),
-    ],
-)
-def test_captions(values: dict[str, float], text: str) -> None:
-    assert caption(episode_of(0, values)) == text
-
-
 def test_a_graph_is_drawn_and_explained_wherever_a_policy_kept_one() -> None:
     graph = replace(trace_of(), nodes=np.array([[1.0, 1.0], [2.0, 1.5], [3.0, 3.0]]), links=np.array([[0, 1], [1, 2]]))
     plain, with_graph = cell_of("frontier"), cell_of("ealc")
-    with_graph = replace(with_graph, episodes=[replace(with_graph.episodes[0], trace=graph)])
+    with_graph = replace(with_graph, episodes=[replace(with_graph.episodes[0], picture=graph)])
     figure = overview([[plain, with_graph]])
     legend = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "topological graph" in legend and legend.count("true path") == 1
@@ -123,24 +102,23 @@ def test_a_team_is_drawn_robot_by_robot() -> None:
     steps = np.linspace(0, 1, 20)[:, None]
     paths = np.stack([np.hstack([1 + 2 * steps, 1 + 0 * steps]), np.hstack([3 - steps, 2 + steps])], axis=1)
     goals = np.array([[3.0, 1.0], [2.0, 3.0]])
-    bare = replace(trace_of(grid=False), true=np.empty((0, 2)), estimated=np.empty((0, 2)))
-    team = replace(bare, team=paths, goal=goals, collided=np.array([False, True]))
-    episode = episode_of(0, {"arrival": 0.5, "path_length": 3.4}, "collision", np.nan, team)
+    team = TeamTrace(paths, goals, np.array([False, True]), Walls(SQUARE))
+    episode = replace(episode_of(0, {}, "collision", picture=team), caption="one of two arrived")
     figure = single(Cell(EnvEntry(id="office"), PolicyEntry(name="apart"), [episode]))
     axes = figure.axes[0]
-    assert axes.get_title() == "apart in office, seed 0\n50% of the robots arrived in 3.4 m: collision"
+    assert axes.get_title() == "apart in office, seed 0\none of two arrived"
     lines = [line for line in axes.get_lines() if len(line.get_xdata()) == 20]
     assert [line.get_xydata()[-1].tolist() for line in lines] == goals.tolist()
     assert lines[0].get_color() != lines[1].get_color()
-    ends = [line for line in axes.get_lines() if line.get_label() == "end"]
-    assert [line.get_marker() for line in ends] == ["s", "X"]
+    ends = [line.get_marker() for line in axes.get_lines() if len(line.get_xdata()) == 1]
+    assert ends == ["o", "*", "s", "o", "*", "X"]
     figure.canvas.draw()
 
 
 def test_a_comparison_of_teams_keeps_what_pictures_need() -> None:
     env = gym.make("lidarena/CorridorCentral-v0", map="passing", robots=2, places="predefined", expose_truth=True)
-    episode = run_episode(env, make("prioritized_search", env), 3, keep_trace=True, max_steps=20)
-    trace = episode.trace
-    assert trace is not None and trace.team.shape == (21, 2, 2) and trace.goal.shape == (2, 2)
-    assert trace.grid is None and not trace.collided.any() and len(trace.edges)
-    assert caption(episode).startswith("0% of the robots arrived")
+    episode = run_episode(env, make("prioritized_search", env), 3, keep_picture=True, max_steps=20)
+    trace = episode.picture
+    assert isinstance(trace, TeamTrace) and trace.paths.shape == (21, 2, 2) and trace.goals.shape == (2, 2)
+    assert not trace.collided.any() and len(trace.walls.edges)
+    assert episode.caption.startswith("0% of the robots arrived")

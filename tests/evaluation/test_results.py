@@ -10,7 +10,6 @@ import pytest
 from lidarena.base.errors import ConfigError
 from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import ComparisonConfig
-from lidarena.evaluation.measures.table_columns import BY_NAME
 from lidarena.evaluation.results import (
     RESULTS_FILE,
     best,
@@ -22,7 +21,7 @@ from lidarena.evaluation.results import (
     write_results_folder,
 )
 from lidarena.evaluation.statistics import bootstrap, share_interval
-from tests.evaluation.rows import row_of
+from tests.evaluation.rows import BY_NAME, row_of
 
 CONFIG = check_config({"envs": ["lidarena/Env1-v0"], "policies": ["random", "frontier"]}, ComparisonConfig)
 N = 12

@@ -59,12 +59,12 @@ def test_an_environment_may_have_a_number_of_episodes_and_worlds_of_its_own() ->
     assert len(run_tasks(tasks, workers=1)) == 4
 
 
-def test_only_the_first_episode_is_drawn_and_filmed() -> None:
+def test_only_the_first_episode_is_drawn_and_recorded() -> None:
     tasks = list_tasks(config_of(*TWO, videos="mp4"), Path("videos"))
-    assert [task.keep_trace for task in tasks] == [True, False, False] * 2
-    films = {task.seed: task.film for task in tasks if task.policy.title == "hesitant"}
-    assert films == {10: Path("videos/Corridor/hesitant.mp4"), 11: None, 12: None}
-    assert not any(task.keep_trace or task.film for task in list_tasks(config_of(*TWO, pictures=False), Path("v")))
+    assert [task.keep_picture for task in tasks] == [True, False, False] * 2
+    videos = {task.seed: task.video for task in tasks if task.policy.title == "hesitant"}
+    assert videos == {10: Path("videos/Corridor/hesitant.mp4"), 11: None, 12: None}
+    assert not any(task.keep_picture or task.video for task in list_tasks(config_of(*TWO, pictures=False), Path("v")))
 
 
 def test_results_do_not_depend_on_the_number_of_processes() -> None:
@@ -74,8 +74,8 @@ def test_results_do_not_depend_on_the_number_of_processes() -> None:
     assert measured(alone) == measured(together)
     assert {str(task) for task in done} == {str(task) for task in tasks}
     for one, other in zip(alone, together, strict=True):
-        np.testing.assert_array_equal(one.progress, other.progress)
-    np.testing.assert_array_equal(alone[0].trace.true, together[0].trace.true)  # type: ignore[union-attr]
+        np.testing.assert_array_equal(one.progress.points, other.progress.points)  # type: ignore[union-attr]
+    np.testing.assert_array_equal(alone[0].picture.true, together[0].picture.true)  # type: ignore[union-attr]
 
 
 def test_results_do_not_depend_on_the_company() -> None:

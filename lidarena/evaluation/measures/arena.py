@@ -1,4 +1,4 @@
-"""What is measured of a drive through an arena."""
+"""Drives through an arena: how long, how near to the obstacles, how smooth, and BARN's score."""
 
 import math
 from collections.abc import Mapping, Sequence
@@ -7,11 +7,44 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.evaluation.measures.family_measures import FamilyMeasures
+from lidarena.evaluation.measures.table_columns import OUTCOME, Measure
+from lidarena.evaluation.recording import Recording
+from lidarena.evaluation.trace import RobotTrace, Walls
 from lidarena.planning.potential_field.circle_grid import astar_path
 from lidarena.planning.potential_field.regression_search import path_length
 
 _SLOWEST, _FASTEST = 8.0, 2.0
 """BARN counts a drive as if it took at least and at most so many optimal times."""
+
+
+class ArenaMeasures(FamilyMeasures):
+    """What is measured of a drive to a goal; planning counts as part of the first decision."""
+
+    columns = (
+        *OUTCOME,
+        Measure("path_ratio", "Path over A*'s", better="low", needs="success", main=True),
+        Measure("least_clearance", "Clearance", "m", 1, "m", "high", needs="success", main=True),
+        Measure("smoothness", "Turning", "rad/m", 1, "rad/m", "low", needs="success", main=True),
+        Measure("barn_score", "BARN score", better="high", main=True),
+    )
+    kept = ("truth.pose", "clearance")
+
+    def measure(self, recording: Recording) -> Mapping[str, float]:
+        """See ``measure_drive``."""
+        places, clearances = recording.positions("truth.pose"), recording.series("clearance")
+        return measure_drive(recording.info, places, clearances.tolist(), recording.decision_times)
+
+    def picture(self, recording: Recording) -> RobotTrace:
+        """The path among the obstacles."""
+        goal = np.array(recording.info["goal"], np.float64).reshape(1, 2)
+        walls, crashed = Walls.of(recording.env, "obstacles"), recording.ending == "collision"
+        return RobotTrace(recording.positions("truth.pose"), walls=walls, goal=goal, crashed=crashed)
+
+    def describe(self, values: Mapping[str, float]) -> str:
+        """Such as ``"1.02 × A*'s path"``; empty without success."""
+        ratio = values.get("path_ratio", math.nan)
+        return f"{ratio:.2f} × A*'s path" if math.isfinite(ratio) else ""
 
 
 def measure_drive(
@@ -72,3 +105,6 @@ def _turning(places: NDArray[np.float64]) -> float:
     headings = np.arctan2(steps[:, 1], steps[:, 0])
     turns = (np.diff(headings) + np.pi) % (2.0 * np.pi) - np.pi
     return float(np.abs(turns).sum())
+
+
+MEASURES = ArenaMeasures()

@@ -1,14 +1,130 @@
-"""How right the final map is, against the floor plan."""
+"""Explorations: how much was mapped, on which way, how certain, and how right the final map is."""
+
+from collections.abc import Mapping
+from typing import Any
 
 import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration.coverage import measure_coverage
+from lidarena.evaluation.measures.family_measures import FamilyMeasures
+from lidarena.evaluation.measures.table_columns import COLLISION, SUCCESS, Measure
+from lidarena.evaluation.progress_curve import ProgressCurve
+from lidarena.evaluation.recording import Recording
+from lidarena.evaluation.statistics import geometric_mean
+from lidarena.evaluation.trace import BelievedMap, RobotTrace, Walls
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.physics import RobotSpec
 
+EXPLORED = 0.99
+"""Completeness that counts as success of an exploration, however its episode ended but by a collision."""
+COMPLETENESS = Measure("completeness", "Explored", "%", 100, better="high", main=True)
 _WITHIN_ONE = np.ones((3, 3), np.uint8)
+
+
+class ExplorationMeasures(FamilyMeasures):
+    """What is measured of an exploration; its ending may also be ``out of patience``: nothing new for too long."""
+
+    columns = (
+        COMPLETENESS,
+        SUCCESS,
+        COLLISION,
+        Measure("path_length", "Path", "m", 1, "m", "low", needs="completeness", main=True),
+        Measure("time", "Time", "s", 1, "s", "low", needs="completeness", main=True),
+        Measure("d_optimality", "D-optimality", "10⁻³", 1000, better="low", needs="completeness", main=True),
+        Measure("trajectory_error", "Pose error", "cm", 100, "m", "low", needs="completeness", main=True),
+        Measure("map_iou", "Map IoU", "%", 100, better="high", needs="completeness", main=True),
+        Measure("odometry_error", "Odometry error", "cm", 100, "m"),
+        Measure("entropy", "Entropy", "nat", 1, "nat"),
+        Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat", main=True),
+    )
+    kept = (
+        *("time", "completeness", "d_optimality", "entropy", "entropy_gmapping"),
+        *("truth.pose", "pose", "odometry_pose"),
+    )
+
+    def ending(self, recording: Recording) -> str:
+        """As of every environment, but for what ran out of ``patience`` before it ran out of steps."""
+        ending = super().ending(recording)
+        patience = getattr(getattr(recording.env.unwrapped, "options", None), "patience", None)
+        if ending == "out of time" and patience is not None and recording.steps < recording.step_limit:
+            return "out of patience"
+        return ending
+
+    def measure(self, recording: Recording) -> Mapping[str, float]:
+        """See ``columns``; means are over the steps, D-optimality's is geometric."""
+        values = {
+            "path_length": float(recording.info.get("truth", {}).get("path_length", np.nan)),
+            "d_optimality": float(geometric_mean(recording.steps_of("d_optimality"))),
+            "trajectory_error": _position_error(recording, "pose"),
+            "odometry_error": _position_error(recording, "odometry_pose"),
+            "map_iou": _map_quality(recording),
+        }
+        values |= {name: float(np.mean(recording.steps_of(name))) for name in ("entropy", "entropy_gmapping")}
+        if recording.ending != "collision":  # also where no completeness ends an episode
+            explored = recording.series("completeness")[-1] >= EXPLORED
+            values["success"] = float(recording.ending == "success" or explored)
+        return values
+
+    def picture(self, recording: Recording) -> RobotTrace | None:
+        """The believed map on the true walls, both paths, and the policy's graph if it keeps one."""
+        true, estimated = (known(recording.positions(name)) for name in ("truth.pose", "pose"))
+        if not len(true) + len(estimated):
+            return None
+        if np.array_equal(true, estimated):  # the pose is known: there is no belief to draw beside it
+            estimated = np.empty((0, 2))
+        graph = getattr(recording.policy, "graph", None)
+        nodes = np.array(graph.positions if graph is not None else [], np.float64).reshape(-1, 2)
+        links = np.array(sorted(graph.edges if graph is not None else []), np.int64).reshape(-1, 2)
+        return RobotTrace(
+            true,
+            estimated,
+            Walls.of(recording.env),
+            _believed(recording.info),
+            nodes,
+            links,
+            crashed=recording.ending == "collision",
+        )
+
+    def progress(self, recording: Recording) -> ProgressCurve | None:
+        """How much was explored when."""
+        return ProgressCurve.of(COMPLETENESS, recording.series("time"), recording.series("completeness"))
+
+    def describe(self, values: Mapping[str, float]) -> str:
+        """Such as ``"explored 97% in 31.2 m, 105 s"``."""
+        explored = values.get("completeness", np.nan)
+        part = f"explored {100 * explored:.0f}%" if np.isfinite(explored) else ""
+        return " in ".join(text for text in (part, way(values)) if text)
+
+
+def way(values: Mapping[str, float]) -> str:
+    """Length and time of a drive, as far as they are known, such as ``"31.2 m, 105 s"``."""
+    length, time = values.get("path_length", np.nan), values.get("time", np.nan)
+    parts = [(f"{length:.1f} m", length), (f"{time:.0f} s", time)]
+    return ", ".join(text for text, value in parts if np.isfinite(value))
+
+
+def known(path: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The positions (n, 2) that are not NaN."""
+    return path[~np.isnan(path).any(axis=1)]
+
+
+def _position_error(recording: Recording, name: str) -> float:
+    """Mean distance to the true position over the episode [m]."""
+    away = recording.positions(name) - recording.positions("truth.pose")
+    return float(np.mean(np.hypot(away[:, 0], away[:, 1])))
+
+
+def _believed(info: Mapping[str, Any]) -> BelievedMap | None:
+    if "map" not in info:
+        return None
+    return BelievedMap(np.array(info["map"], np.int8), float(info["resolution"]), np.array(info["origin"], np.float64))
+
+
+def _map_quality(recording: Recording) -> float:
+    plan, belief = getattr(recording.env.unwrapped, "floorplan", None), _believed(recording.info)
+    return np.nan if plan is None or belief is None else map_iou(plan, belief.cells, belief.origin, belief.resolution)
 
 
 def map_iou(plan: Floorplan, occupancy: NDArray[np.int8], origin: NDArray[np.float64], resolution: float) -> float:
@@ -57,3 +173,6 @@ def _on_grid(
     inside = (rows >= 0) & (rows < shape[0]) & (columns >= 0) & (columns < shape[1])
     moved[rows[inside], columns[inside]] = True
     return moved
+
+
+MEASURES = ExplorationMeasures()

@@ -8,17 +8,18 @@ import pytest
 
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import Episode, run_episode
-from lidarena.evaluation.measures.arena import barn_score, measure_drive
-from lidarena.evaluation.measures.table_columns import BY_NAME, FAMILIES, MEASURES, names_for
+from lidarena.evaluation.measures.arena import MEASURES, barn_score, measure_drive
 from lidarena.evaluation.participants import make_participants
-from lidarena.evaluation.pictures import Cell, caption, draw_pictures
+from lidarena.evaluation.pictures import Cell, draw_pictures
 from lidarena.evaluation.results import contenders, summarise
+from lidarena.evaluation.trace import RobotTrace
+from tests.evaluation.rows import BY_NAME
 
 
 def episode(policy: str, seed: int = 0, **keywords: Any) -> Episode:
     entry = EnvEntry(id="lidarena/Arena-v0", keywords={"arena": "yang:u"} | keywords)
     env, driver = make_participants(entry, PolicyEntry(name=policy))
-    return run_episode(env, driver, seed, keep_trace=True)
+    return run_episode(env, driver, seed, keep_picture=True)
 
 
 def last_info(success: bool = True, optimal_time: float = math.inf) -> dict[str, Any]:
@@ -66,21 +67,15 @@ def test_barns_score_is_capped_at_a_half_and_an_eighth(success: bool, time: floa
     assert math.isnan(barn_score(success, time, math.inf))
 
 
-def test_every_family_names_measures_that_exist() -> None:
-    assert set.union(*map(set, FAMILIES.values())) == set(BY_NAME) == {measure.name for measure in MEASURES}
-    assert names_for("arena") & names_for("exploration") >= {"success", "collision", "decision_time"}
-    assert names_for(None) == names_for("exploration") and "barn_score" not in names_for(None)
-
-
 def test_an_arenas_episode_has_the_arenas_measures() -> None:
     found = episode("apf_improved")
-    assert set(found.measures) == names_for("arena") and found.ending == "success"
+    assert list(found.measures) == [column.name for column in MEASURES.table] and found.ending == "success"
     assert 0.9 < found.measures["path_ratio"] < 1.05
     assert 1.0 < found.measures["least_clearance"] < 1.6
     assert math.isnan(found.measures["barn_score"])
-    assert found.trace is not None and found.trace.goal.tolist() == [[70.0, 70.0]]
-    assert not len(found.trace.estimated)  # the pose is known
-    assert len(found.trace.true) == found.measures["steps"] + 1
+    assert isinstance(found.picture, RobotTrace) and found.picture.goal.tolist() == [[70.0, 70.0]]
+    assert not len(found.picture.estimated)  # the pose is known
+    assert len(found.picture.true) == found.measures["steps"] + 1
 
 
 def test_what_stops_short_has_failed() -> None:
@@ -100,6 +95,6 @@ def test_paths_are_compared_among_those_that_arrive() -> None:
 
 def test_arenas_are_drawn(tmp_path: Any) -> None:
     entry, found = EnvEntry(id="lidarena/Arena-v0", name="U"), episode("apf_improved")
-    assert "A*'s path: success" in caption(found)
+    assert "A*'s path: success" in found.caption
     paths = draw_pictures([[Cell(entry, PolicyEntry(name="apf_improved"), [found])]], tmp_path)
     assert [path.name for path in paths] == ["overview.png", "apf_improved.png"]
