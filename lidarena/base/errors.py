@@ -23,6 +23,10 @@ class ConfigError(LidarenaError):
     """A configuration with an unknown key or a value out of range."""
 
 
+class EstimatorError(LidarenaError):
+    """A SLAM estimator of one's own that does not keep what its protocol asks for."""
+
+
 class KeywordError(ConfigError, TypeError):
     """A keyword that there is not: a ``TypeError`` too, as programs expect that probe what a function takes."""
 

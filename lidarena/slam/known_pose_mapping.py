@@ -1,47 +1,36 @@
-"""Mapping with known poses: what is left of SLAM when the robot knows where it is (``slam="truth"``, for ablations)."""
+"""Mapping with known poses: what is left of SLAM when the robot knows where it is, or believes that it does."""
 
 import math
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf
-from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps, trace_scan
+from lidarena.slam.estimator import BatchEstimator, EstimatorSettings
+from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.slam.scan_outline import Outlines, empty_outlines
 
 
-class KnownPoseMapper:
-    """Traces scans from given poses into a batch of maps, at the particle filter's update rule.
+class KnownPoseEstimator(BatchEstimator):
+    """Traces scans from given poses into the maps, at the particle filter's update rule; whose poses, subclasses say.
 
     Args:
-        worlds: Number of maps.
-        wanted: (plans, rows, columns) cells that count as covered once known; its shape is that of every grid.
-        directions: (2, beams) cos and sin of the beams' angles.
-        max_range: Ranges from here on are no returns [m].
-        resolution: Side of a cell [m].
-        parameters: Settings, of which only the update rule matters.
+        settings: What it is made for.
 
     Attributes:
-        maps: The occupancy grids.
+        parameters: Settings, of which only the update rule and the noise matter.
         since: (worlds, 3) distance [m], turn [rad] and time [s] since the last traced scan.
         outlines: What the kernel works on, a row for each thread.
     """
 
-    def __init__(
-        self,
-        worlds: int,
-        wanted: NDArray[np.uint8],
-        directions: NDArray[np.float64],
-        max_range: float,
-        resolution: float = 0.05,
-        parameters: FilterParameters | None = None,
-    ) -> None:
-        self.maps: OccupancyMaps = empty_maps(worlds, wanted)
-        self.since = np.zeros((worlds, 3))
-        self.outlines = empty_outlines(worlds, wanted.shape[1], directions.shape[1], max_range, resolution)
-        self.parameters = parameters or FilterParameters()
-        self.directions, self.max_range, self.resolution = directions, max_range, resolution
+    def __init__(self, settings: EstimatorSettings) -> None:
+        super().__init__(settings)
+        rows, beams = settings.wanted.shape[1], settings.directions.shape[1]
+        self.parameters = FilterParameters(noise=settings.noise)
+        self.since = np.zeros((settings.worlds, 3))
+        self.outlines = empty_outlines(settings.worlds, rows, beams, settings.lidar.max_range, settings.resolution)
 
     def start(
         self,
@@ -49,10 +38,15 @@ class KnownPoseMapper:
         plan: int,
         origin: NDArray[np.float64],
         pose: NDArray[np.float64],
+        rng: np.random.Generator,
     ) -> None:
-        """Start one map anew; the next scan is traced, whatever the update rule says and from whatever ``pose``."""
-        clear_map(self.maps, world, plan, origin)
+        """Begin an episode in one world; the next scan is traced, whatever the update rule says."""
+        super().start(world, plan, origin, pose, rng)
         self.since[world] = math.inf
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """The belief, and what has happened since the last traced scan."""
+        return super().arrays() | {"since": self.since}
 
 
 @leaf
@@ -82,8 +76,8 @@ def map_scan(
         parameters: Settings, of which only the update rule matters.
         reading: (3,) the motion.
         scan: (beams,) ranges [m].
-        pose: (3,) true pose.
-        since: (worlds, 3), see ``KnownPoseMapper``.
+        pose: (3,) where the scan was taken.
+        since: (worlds, 3), see ``KnownPoseEstimator``.
         maps: The grids.
         outlines: Room to work in.
         s: Which row of it; no other thread may use it meanwhile.

@@ -100,3 +100,29 @@ def pose_moments(
     covariance[1, 0], covariance[2, 0], covariance[2, 1] = covariance[0, 1], covariance[0, 2], covariance[1, 2]
     for k in range(3):
         covariance[k, k] += COVARIANCE_FLOOR[k]
+
+
+@leaf
+def compound_covariance(
+    motion: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+    dx: float,
+    dy: float,
+    vx: float,
+    vy: float,
+    vt: float,
+) -> None:
+    """Covariance (3, 3) of a motion (3,) followed by a reading (dx, dy) with variances vx, vy, vt in its own frame."""
+    cos, sin = math.cos(motion[2]), math.sin(motion[2])
+    lever = (-sin * dx - cos * dy, cos * dx - sin * dy)
+    for k in range(2):  # J Σ Jᵀ with J = [[1, 0, lever₀], [0, 1, lever₁], [0, 0, 1]]: first the rows, then the columns
+        for j in range(3):
+            covariance[k, j] += lever[k] * covariance[2, j]
+    for k in range(2):
+        for j in range(3):
+            covariance[j, k] += lever[k] * covariance[j, 2]
+    covariance[0, 0] += cos * cos * vx + sin * sin * vy
+    covariance[1, 1] += sin * sin * vx + cos * cos * vy
+    covariance[0, 1] += cos * sin * (vx - vy)
+    covariance[1, 0] += cos * sin * (vx - vy)
+    covariance[2, 2] += vt

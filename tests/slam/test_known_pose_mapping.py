@@ -7,29 +7,33 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.slam.known_pose_mapping import KnownPoseMapper, map_scan
+from lidarena.slam.estimator import EstimatorSettings
+from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import empty_maps, trace_scan
-from lidarena.slam.rbpf.particle_filter_state import FilterParameters
+from lidarena.slam.true_pose import TruePoseEstimator
+from lidarena.world.lidar import LidarSpec
+from lidarena.world.odometry import OdometryNoise
 
 BEAMS, ROWS, COLUMNS, REACH = 24, 60, 80, 3.5
 ANGLES = np.arange(BEAMS) * (2 * math.pi / BEAMS)
 DIRECTIONS = np.stack([np.cos(ANGLES), np.sin(ANGLES)])
 WANTED = np.ones((1, ROWS, COLUMNS), np.uint8)
-RULE = FilterParameters(linear_update=1.0, angular_update=0.2, temporal_update=0.5)
+LIDAR = LidarSpec(beams=BEAMS, max_range=REACH)
+RNG = np.random.default_rng(0)
 MOTION = st.tuples(st.floats(-0.7, 0.7), st.floats(-0.3, 0.3), st.floats(-0.15, 0.15), st.sampled_from([0.05, 0.2]))
 
 
-def mapper(worlds: int = 1) -> KnownPoseMapper:
-    made = KnownPoseMapper(worlds, WANTED, DIRECTIONS, REACH, parameters=RULE)
+def mapper(worlds: int = 1) -> KnownPoseEstimator:
+    made = TruePoseEstimator(EstimatorSettings(worlds, WANTED, DIRECTIONS, LIDAR, 0.05, OdometryNoise()))
     for world in range(worlds):
-        made.start(world, 0, np.zeros(2), np.zeros(3))
+        made.start(world, 0, np.zeros(2), np.zeros(3), RNG)
     return made
 
 
 def feed(
-    made: KnownPoseMapper, reading: np.ndarray, scan: np.ndarray, pose: np.ndarray, seconds: float, world: int = 0
+    made: KnownPoseEstimator, reading: np.ndarray, scan: np.ndarray, pose: np.ndarray, seconds: float, world: int = 0
 ) -> None:
-    settings_ = (seconds, made.resolution, made.max_range, made.directions, made.parameters)
+    settings_ = (seconds, 0.05, REACH, DIRECTIONS, made.parameters)
     map_scan(world, *settings_, reading, scan, pose, made.since, made.maps, made.outlines, 0)
 
 
@@ -87,7 +91,7 @@ def test_starting_again_forgets_the_map_and_traces_the_next_scan() -> None:
     feed(made, np.zeros(3), scans[0], poses[0], 0.1)
     feed(made, np.zeros(3), scans[1], poses[1], 0.1)  # not due
     first = made.maps.visits.copy()
-    made.start(0, 0, np.array([-1.0, -2.0]), poses[0])
+    made.start(0, 0, np.array([-1.0, -2.0]), poses[0], RNG)
     assert not made.maps.visits.any() and (made.maps.occupancy == -1).all() and made.maps.covered[0] == 0
     feed(made, np.zeros(3), scans[0], poses[0] - (1.0, 2.0, 0.0), 0.1)
     assert made.maps.origin[0].tolist() == [-1.0, -2.0]

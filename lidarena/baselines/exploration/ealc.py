@@ -105,7 +105,12 @@ class EalcPolicy(FrontierPolicy):
         Args:
             observation: The environment's; only its beams are used.
             info: The environment's; what ``frontier`` uses, and ``d_optimality`` or ``entropy``.
+
+        Raises:
+            ConfigError: The environment's estimator has no entropy, which was to be compared.
         """
+        if self._key not in info:
+            raise ConfigError(f"the environment's estimator gives no {self._key}; choose uncertainty='d_optimality'")
         self._uncertainty = float(info[self._key])
         return super().act(observation, info)
 

@@ -22,7 +22,8 @@ class ExplorationEnv(SingleWorld):
     plan. Its odometry drifts (gmapping's noise model); a 360-beam lidar of 3.5 m range and 1 cm noise feeds a
     Rao-Blackwellised particle filter, which estimates pose and map. Reward and observation are those of DA-SLAM
     (Alcalde et al. 2022), whose worlds are ``lidarena/Env1-v0`` … ``lidarena/Env4-v0``; ``lidarena/Exploration-v0``
-    takes any floor plan.
+    takes any floor plan. ``slam=`` puts another estimator in the filter's place: ``"odometry"``, ``"truth"``, or one's
+    own, see ``lidarena.slam.estimator``.
 
     ## Action space
 
@@ -84,8 +85,8 @@ class ExplorationEnv(SingleWorld):
 
     ## Info
 
-    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``, ``entropy`` of the weights [nat],
-    ``n_eff``, ``entropy_gmapping`` (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``),
+    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``; with ``slam="rbpf"`` ``entropy`` of the
+    weights [nat], ``n_eff``, ``entropy_gmapping`` (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``);
     ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``success`` (completeness reached ``stop_at``),
     ``radius`` of the robot [m], ``odometry_pose`` (3,), ``reward_terms``; ``map``
     (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change),

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.exploration.actions import action_space, commands_of
-from lidarena.envs.exploration.observations import make_observer
+from lidarena.envs.exploration.observations import check_entropy, make_observer
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.envs.exploration.rendering import PathRecorder, draw_exploration
 from lidarena.envs.exploration.rewards import make_reward
@@ -42,6 +42,8 @@ class ExplorationEpisodes:
         self.single_action_space: gym.Space[Any] = action_space(options.action)
         parts = 1 if options.action == "discrete" else 2
         uncertain = options.reward == "d_optimality"
+        if uncertain and options.observation != "map":
+            check_entropy(self.core)
         self.observer = make_observer(options.observation, parts, uncertain, self.core.beam.beams)
         self.single_observation_space = self.observer.space
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
@@ -125,10 +127,8 @@ class ExplorationEpisodes:
                 "completeness": self._completeness.copy(),
                 "pose": core.estimate.copy(),
                 "covariance": core.covariance.copy(),
-                "d_optimality": core.criteria[:, 0].copy(),
-                "entropy": core.criteria[:, 1].copy(),
-                "n_eff": core.criteria[:, 2].copy(),
-                "entropy_gmapping": core.criteria[:, 3].copy(),
+                "d_optimality": core.d_optimality.copy(),
+                **core.estimator.infos(),
                 "path_length": core.sensors.path_length.copy(),
                 "time": self._steps * self.options.decision_period,
                 "collision": core.sensors.collision.copy(),

@@ -7,9 +7,11 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.errors import ConfigError
 from lidarena.base.jit import leaf
 from lidarena.envs.exploration.frontier_directions import frontier_histogram, mean_direction
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
+from lidarena.slam.registry import estimator_name
 from lidarena.world.floorplan import START_CLEARANCE
 
 FRONT_BEAMS = (0, 45, 90, 315, 270)
@@ -145,9 +147,22 @@ def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:
-    """Entropy of the particles' weights over its maximum ln N, (worlds,) in [0, 1]."""
-    most = math.log(max(core.options.particles, 2))
-    return np.clip(core.criteria[:, 1] / most, 0.0, 1.0)
+    """Entropy of what the estimator believes over its maximum, (worlds,) in [0, 1]; 0 where it has none."""
+    entropy = core.estimator.scaled_entropy()
+    return np.zeros(core.worlds) if entropy is None else entropy
+
+
+def check_entropy(core: ExplorationCore) -> None:
+    """Refuse an observation of the entropy where the estimator has none.
+
+    Raises:
+        ConfigError: It names the estimator.
+    """
+    if core.estimator.scaled_entropy() is None:
+        raise ConfigError(
+            f"slam = {estimator_name(core.options.slam)!r} has no entropy, which this observation holds; "
+            "take observation='map', whose entropy is 0 then, or another reward"
+        )
 
 
 @leaf

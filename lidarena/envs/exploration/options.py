@@ -1,12 +1,14 @@
 """Keywords of the exploration environments, checked at the border."""
 
-from collections.abc import Mapping, Sequence
+import warnings
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, TypedDict
 
 from lidarena.base.errors import ConfigError, MapError, suggest
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.envs.exploration.coverage import START_MARGIN
+from lidarena.slam.registry import check_slam, estimator_name
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
 
 ETA = 1.2e-4
@@ -19,14 +21,13 @@ CERTAIN_ENOUGH = 1.3e-4
 """The usual D-optimality of an exploring robot in Env-1 to Env-4."""
 
 MapSpec = str | Floorplan
+SlamSpec = str | Callable[..., Any] | Mapping[str, Any]
 _CHOICES = {
     "reward": ("completeness", "d_optimality", "combined"),
     "observation": ("da_slam", "sectors", "compass", "map"),
     "action": ("discrete", "continuous"),
-    "slam": ("rbpf", "truth"),
     "render_mode": (None, "rgb_array"),
 }
-_PARTICLES = (1, 1000)
 _RANGES = {
     "lidar_noise": (0.0, 1.0),
     "odometry_noise": (0.0, 100.0),
@@ -44,7 +45,7 @@ class ExplorationKeywords(TypedDict, total=False):
     reward: str
     observation: str
     action: str
-    slam: str
+    slam: SlamSpec
     particles: int
     lidar_noise: float
     odometry_noise: float
@@ -74,8 +75,10 @@ class ExplorationOptions:
             five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary
             with an egocentric picture of the map).
         action: ``"discrete"`` (DA-SLAM's three) or ``"continuous"``.
-        slam: ``"rbpf"`` runs the particle filter, ``"truth"`` maps with the true pose.
-        particles: Of the filter.
+        slam: ``"rbpf"`` runs the particle filter, ``"odometry"`` maps with the pose that the odometry adds up to,
+            ``"truth"`` with the true one. Or an estimator of one's own: ``"module:callable"``, a class or function (see
+            ``lidarena.slam.estimator``). With options: a dictionary of them and of ``name``.
+        particles: Of the particle filter.
         lidar_noise: Standard deviation of a range [m].
         odometry_noise: Factor on gmapping's motion noise; 0 is perfect odometry.
         decision_period: Time between decisions [s].
@@ -98,7 +101,7 @@ class ExplorationOptions:
     reward: str = "completeness"
     observation: str = "da_slam"
     action: str = "discrete"
-    slam: str = "rbpf"
+    slam: SlamSpec = "rbpf"
     particles: int = 30
     lidar_noise: float = 0.01
     odometry_noise: float = 1.0
@@ -138,7 +141,7 @@ class ExplorationOptions:
             check_range("stop_at", self.stop_at, 0.0, 1.0)
         if self.patience is not None:
             check_range("patience", self.patience, 0.01, 1e9)
-        check_range("particles", self.particles, *_PARTICLES, whole=True)
+        self._check_slam()
         check_switch("expose_truth", self.expose_truth)
         self._check_weights()
         if isinstance(self.start, str) and self.start != "random":
@@ -147,6 +150,25 @@ class ExplorationOptions:
             _check_pose(self.start)
         if not isinstance(self.map, str | Floorplan) and (not isinstance(self.map, Sequence) or not len(self.map)):
             raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file, or a list of them")
+
+    def _check_slam(self) -> None:
+        check_slam(self.slam)
+        name, given = estimator_name(self.slam), self.particles != type(self).particles
+        if given and name == "truth":
+            message = f"particles = {self.particles} are for slam='rbpf'; they will be refused with slam='truth'"
+            warnings.warn(message, DeprecationWarning, stacklevel=2)
+        elif given and name != "rbpf":
+            raise ConfigError(f"particles = {self.particles} are for slam='rbpf', not {name!r}")
+        elif given and isinstance(self.slam, Mapping) and self.slam.get("particles", self.particles) != self.particles:
+            raise ConfigError(f"particles = {self.particles} contradict slam = {dict(self.slam)!r}")
+
+    @property
+    def estimator(self) -> SlamSpec:
+        """``slam`` with the particles of the particle filter among its options."""
+        if estimator_name(self.slam) != "rbpf":
+            return self.slam
+        given = self.slam if isinstance(self.slam, Mapping) else {}
+        return {"name": "rbpf", "particles": self.particles, **given}
 
     def _check_weights(self) -> None:
         if self.weights is None:

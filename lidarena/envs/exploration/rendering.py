@@ -101,17 +101,18 @@ def _draw_map(canvas: Canvas, core: ExplorationCore, world: int) -> None:
 def _draw_belief(canvas: Canvas, core: ExplorationCore, world: int) -> None:
     estimate = core.estimate[world]
     canvas.robot(estimate, core.robot.radius, BLUE)
-    if core.filters is not None:
-        canvas.dots(core.filters.state.particles[world, :, :2], MAGENTA, 1.5)
+    if core.estimator.particles is not None:
+        canvas.dots(core.estimator.particles[world, :, :2], MAGENTA, 1.5)
     canvas.ellipse(estimate[:2], core.covariance[world, :2, :2], MAGENTA)
 
 
 def _headline(core: ExplorationCore, world: int, name: str) -> str:
-    d_optimality, _, n_eff, _ = core.criteria[world]
+    particles = core.estimator.infos().get("n_eff")
+    n_eff = "" if particles is None else f"   N_eff {particles[world]:.0f}"
     path = core.sensors.path_length[world]
     return (
         f"{name}   completeness {100 * core.completeness[world]:.1f} %   path {path:.1f} m   "
-        f"D-opt {d_optimality:.1e}   N_eff {n_eff:.0f}{'   COLLISION' if core.sensors.collision[world] else ''}"
+        f"D-opt {core.d_optimality[world]:.1e}{n_eff}{'   COLLISION' if core.sensors.collision[world] else ''}"
     )
 
 

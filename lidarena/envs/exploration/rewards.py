@@ -74,7 +74,7 @@ class UncertaintyReward:
     def grade(self, gain: Floats) -> Floats:
         """Grade a step."""
         # NumPy's tanh takes another path for the last few of an array: world i would depend on the batch's size
-        certain = np.array([1.0 + math.tanh(self._eta / d) for d in self._core.criteria[:, 0].tolist()])
+        certain = np.array([1.0 + math.tanh(self._eta / d) for d in self._core.d_optimality.tolist()])
         self.terms = _crash_or(self._core, "d_optimality", certain)
         return self.terms["d_optimality"] + self.terms["collision"]
 
@@ -126,7 +126,7 @@ class CombinedReward:
         area, path = self._areas[core.plan], core.sensors.path_length
         size = (np.minimum(area, LARGEST_AREA) / ORDINARY_AREA) ** SIZE_POWER
         self._steps += 1
-        log_d = np.array([math.log(max(d, self._enough)) for d in core.criteria[:, 0].tolist()])  # as with tanh above
+        log_d = np.array([math.log(max(d, self._enough)) for d in core.d_optimality.tolist()])  # as with tanh above
         change = (log_d - self._log_mean) / self._steps
         self.terms = {
             "completeness": weights["completeness"] * gain,

@@ -7,14 +7,10 @@ from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.envs.exploration.coverage import measure_coverage
-from lidarena.envs.exploration.kernels import sense_and_filter, sense_and_map
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.envs.worker_threads import on_threads
-from lidarena.slam.known_pose_mapping import KnownPoseMapper
-from lidarena.slam.rbpf.likelihood_field import Fields, tiles_in_use
-from lidarena.slam.rbpf.particle_filter import ParticleFilters
-from lidarena.slam.rbpf.particle_filter_state import FilterParameters
-from lidarena.slam.uncertainty import COVARIANCE_FLOOR
+from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Sensing
+from lidarena.slam.registry import make_estimator
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
 from lidarena.world.odometry import OdometryNoise
@@ -23,8 +19,8 @@ from lidarena.world.sensors import empty_sensors
 
 RESOLUTION = 0.05
 """Side of a map cell, gmapping's δ [m]."""
-_LEAST_FILTER_NOISE = 0.1
-"""The filter never trusts the odometry more than this share of gmapping's noise."""
+_LEAST_BELIEVED_NOISE = 0.1
+"""No estimator trusts the odometry more than this share of gmapping's noise."""
 
 
 class ExplorationCore:
@@ -40,8 +36,8 @@ class ExplorationCore:
     Attributes:
         physics: The true poses; everything that the robot may know is in the attributes below.
         sensors: Scans, odometry, paths, collisions.
-        estimate: (worlds, 3) pose; covariance (worlds, 3, 3); criteria (worlds, 4): D-optimality,
-            entropy, N_eff, gmapping's entropy.
+        estimator: The SLAM; ``maps``, ``estimate`` (worlds, 3), ``covariance`` (worlds, 3, 3) and ``d_optimality``
+            (worlds,) are its.
         wanted_cells: (plans,) size of K of each floor plan.
     """
 
@@ -56,7 +52,9 @@ class ExplorationCore:
         self.wanted_cells = np.array([coverage.wanted.sum() for coverage in self._coverage])
         self._noise = OdometryNoise().scaled(options.odometry_noise)
         self._allocate(worlds)
-        self._make_slam(worlds)
+        self.estimator = self._make_estimator()
+        self.maps, self.estimate = self.estimator.maps, self.estimator.estimate
+        self.covariance, self.d_optimality = self.estimator.covariance, self.estimator.d_optimality
 
     def _allocate(self, worlds: int) -> None:
         self.worlds = worlds
@@ -65,30 +63,15 @@ class ExplorationCore:
         self._near = np.zeros(worlds, np.bool_)
         self.sensors = empty_sensors(worlds, self.beam.beams)
 
-    def _make_slam(self, worlds: int) -> None:
+    def _make_estimator(self) -> BatchEstimator:
         rows, columns = np.max([coverage.wanted.shape for coverage in self._coverage], axis=0)
         wanted = np.zeros((len(self.plans), rows, columns), np.uint8)
         for k, coverage in enumerate(self._coverage):
             r, c = coverage.wanted.shape
             wanted[k, :r, :c] = coverage.wanted
-        factor = max(self.options.odometry_noise, _LEAST_FILTER_NOISE)
-        parameters = FilterParameters(particles=self.options.particles, noise=OdometryNoise().scaled(factor))
-        self.filters: ParticleFilters | None = None
-        self.mapper: KnownPoseMapper | None = None
-        settings = (worlds, wanted, self.lidar.directions, self.beam.max_range, RESOLUTION, parameters)
-        if self.options.slam == "rbpf":
-            self.filters = ParticleFilters(*settings)
-            state = self.filters.state
-            self.maps = self.filters.maps
-            self.estimate, self.covariance, self.criteria = state.estimate, state.covariance, state.criteria
-        else:
-            self.mapper = KnownPoseMapper(*settings)
-            self.maps = self.mapper.maps
-            self.estimate = self.physics.poses[:, 0]
-            self.covariance = np.tile(np.diag(COVARIANCE_FLOOR), (worlds, 1, 1))
-            n = float(self.options.particles)
-            certain = (float(np.prod(COVARIANCE_FLOOR) ** (1 / 3)), 0.0, n, float(np.log(n)))
-            self.criteria = np.tile(np.array(certain), (worlds, 1))
+        believed = OdometryNoise().scaled(max(self.options.odometry_noise, _LEAST_BELIEVED_NOISE))
+        settings = EstimatorSettings(self.worlds, wanted, self.lidar.directions, self.beam, RESOLUTION, believed)
+        return make_estimator(self.options.estimator, settings)
 
     def reset_world(self, world: int, rng: np.random.Generator) -> None:
         """Begin a new episode in one world; everything random is drawn from ``rng``."""
@@ -100,9 +83,7 @@ class ExplorationCore:
         sensors = self.sensors
         sensors.dead_reckoning[world, 0] = pose
         sensors.path_length[world] = sensors.true_path_length[world] = 0.0
-        slam = self.filters or self.mapper
-        assert slam is not None
-        slam.start(world, plan, self._coverage[plan].origin, self.physics.poses[world, 0])
+        self.estimator.start(world, plan, self._coverage[plan].origin, self.physics.poses[world, 0], rng)
         self._perceive(self.physics.poses, world, world + 1)
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
@@ -126,18 +107,14 @@ class ExplorationCore:
 
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Read the sensors of worlds first … last - 1 and run their SLAM."""
-        bumper, period = self.options.collision_distance, self.options.decision_period
-        measured = (
-            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam, bumper,
-            self.lidar.geometry, self.lidar.directions, self.sensors, period, RESOLUTION,
+        sensing = Sensing(
+            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam,
+            self.options.collision_distance, self.lidar.geometry, self.lidar.directions, self.sensors,
+            self.options.decision_period,
         )  # fmt: skip
-        counter = np.array([first])
-        if self.filters is not None:
-            slam = (self.filters.parameters, self.filters.state, self.maps, self.filters.scratch)
-            on_threads(last - first, lambda thread: sense_and_filter(counter, last, thread, *measured, *slam))
-        elif self.mapper is not None:
-            known = (self.mapper.parameters, self.mapper.since, self.maps, self.mapper.outlines)
-            on_threads(last - first, lambda thread: sense_and_map(counter, last, thread, *measured, *known))
+        estimator, counter = self.estimator, np.array([first])
+        on_threads(last - first, lambda thread: estimator.sense_and_estimate(sensing, counter, last, thread))
+        estimator.finish(sensing, first, last)
 
     @property
     def completeness(self) -> NDArray[np.float64]:
@@ -146,26 +123,22 @@ class ExplorationCore:
         return share
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
-        named: dict[str, NDArray[Any]] = {"poses": self.physics.poses, "plan": self.plan, "streams": self.streams}
-        named |= self.sensors._asdict()
-        named |= {f"maps.{name}": array for name, array in self.maps._asdict().items() if name != "wanted"}
-        if self.filters is not None:
-            state = self.filters.state._asdict()
-            fields: Fields = state.pop("fields")
-            named |= {f"fields.{name}": array for name, array in fields._asdict().items()}
-            named["fields.tiles"] = fields.tiles[:, : tiles_in_use(fields)]  # the rest was never written, or is stale
-            named |= {f"filter.{name}": array for name, array in state.items()}
-        elif self.mapper is not None:
-            named["since"] = self.mapper.since
-        return named
+        """Every array that makes up the worlds' state, by name; ``load_arrays`` continues from them.
+
+        Raises:
+            EstimatorError: The estimator cannot be saved.
+        """
+        return self._own_arrays() | self.estimator.arrays()
+
+    def _own_arrays(self) -> dict[str, NDArray[Any]]:
+        own: dict[str, NDArray[Any]] = {"poses": self.physics.poses, "plan": self.plan, "streams": self.streams}
+        return own | self.sensors._asdict()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of another core with the same options."""
-        if self.filters is not None:
-            self.filters.state.fields.references[...] = saved["fields.references"]  # how many tiles there are to load
-        for name, array in self.arrays().items():
+        for name, array in self._own_arrays().items():
             array[...] = saved[name]
+        self.estimator.load_arrays(saved)
         for world in range(self.worlds):
             pose = self.physics.poses[world, 0].tolist()
             self.physics.place(world, self.plans[int(self.plan[world])], [(pose[0], pose[1], pose[2])])

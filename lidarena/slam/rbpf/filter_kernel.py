@@ -17,7 +17,7 @@ from lidarena.slam.rbpf.scan_matching import match, match_cost
 from lidarena.slam.rbpf.scan_points import extract_points
 from lidarena.slam.rbpf.symmetric import Symmetric, inverse, load, rotated
 from lidarena.slam.scan_outline import Outlines
-from lidarena.slam.uncertainty import d_optimality, pose_moments, score_entropy, weight_entropy
+from lidarena.slam.uncertainty import compound_covariance, d_optimality, pose_moments, score_entropy, weight_entropy
 from lidarena.world.odometry import deviations, move, relative_motion
 
 _TURN = 0.03
@@ -86,37 +86,11 @@ def predict(
     sx, sy, st = deviations(parameters.noise, dx, dy, dtheta)
     for i in range(parameters.particles):
         move(state.particles[w, i], dx + sx * normal(stream), dy + sy * normal(stream), dtheta + st * normal(stream))
-    _compound_covariance(state.motion[w], state.motion_covariance[w], dx, dy, sx * sx, sy * sy, st * st)
+    compound_covariance(state.motion[w], state.motion_covariance[w], dx, dy, sx * sx, sy * sy, st * st)
     move(state.motion[w], dx, dy, dtheta)
     state.since[w, 0] += math.hypot(dx, dy)
     state.since[w, 1] += abs(dtheta)
     state.since[w, 2] += duration
-
-
-@leaf
-def _compound_covariance(
-    motion: NDArray[np.float64],
-    covariance: NDArray[np.float64],
-    dx: float,
-    dy: float,
-    vx: float,
-    vy: float,
-    vt: float,
-) -> None:
-    """Covariance (3, 3) of a motion (3,) followed by a reading (dx, dy) with variances vx, vy, vt in its own frame."""
-    cos, sin = math.cos(motion[2]), math.sin(motion[2])
-    lever = (-sin * dx - cos * dy, cos * dx - sin * dy)
-    for k in range(2):  # J Σ Jᵀ with J = [[1, 0, lever₀], [0, 1, lever₁], [0, 0, 1]]: first the rows, then the columns
-        for j in range(3):
-            covariance[k, j] += lever[k] * covariance[2, j]
-    for k in range(2):
-        for j in range(3):
-            covariance[j, k] += lever[k] * covariance[j, 2]
-    covariance[0, 0] += cos * cos * vx + sin * sin * vy
-    covariance[1, 1] += sin * sin * vx + cos * cos * vy
-    covariance[0, 1] += cos * sin * (vx - vy)
-    covariance[1, 0] += cos * sin * (vx - vy)
-    covariance[2, 2] += vt
 
 
 @merged

@@ -8,6 +8,7 @@ import pytest
 
 from lidarena.envs import ExplorationEnv
 from lidarena.envs.exploration.state import ExplorationCore
+from lidarena.slam.rbpf.estimator import ParticleFilterEstimator
 from lidarena.world.floorplan import START_CLEARANCE
 from lidarena.world.sensors import read_sensors
 
@@ -24,8 +25,8 @@ def sense_then_filter(core: ExplorationCore, shift: tuple[float, float, float]) 
     """What the kernel does in one go, in two: the true pose is moved after the sensors were read."""
 
     def perceive(before: np.ndarray, first: int, last: int) -> None:
-        sensors, filters = core.sensors, core.filters
-        assert filters is not None
+        assert isinstance(core.estimator, ParticleFilterEstimator)
+        sensors, filters = core.sensors, core.estimator.filters
         lidar = (START_CLEARANCE, core.lidar.geometry, core.lidar.directions)
         read_sensors(0, before, core.physics.poses, core.plan, core._noise, core.beam, *lidar, core.streams, sensors)
         core.physics.poses += shift

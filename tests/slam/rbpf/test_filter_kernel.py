@@ -9,9 +9,9 @@ from hypothesis import strategies as st
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.slam.planar import compose
-from lidarena.slam.rbpf.filter_kernel import _best_particle, _choose, _compound_covariance, _draw, predict
+from lidarena.slam.rbpf.filter_kernel import _best_particle, _choose, _draw, predict
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, empty_scratch, empty_state
-from lidarena.slam.uncertainty import COVARIANCE_FLOOR, pose_moments
+from lidarena.slam.uncertainty import COVARIANCE_FLOOR, compound_covariance, pose_moments
 from lidarena.world.odometry import deviations
 
 STEP = st.tuples(st.floats(-0.4, 0.4), st.floats(-0.1, 0.1), st.floats(-0.5, 0.5))
@@ -38,7 +38,7 @@ def test_the_covariance_of_a_motion_is_propagated_by_its_jacobian(steps: list[tu
     for k, step in enumerate(steps):
         reading, variances = np.array(step), np.array([v, 0.01 * k, 0.02])
         expected = propagated(motion, expected, reading, variances)
-        _compound_covariance(motion, found, reading[0], reading[1], *variances.tolist())
+        compound_covariance(motion, found, reading[0], reading[1], *variances.tolist())
         motion = compose(motion, reading)
     np.testing.assert_allclose(found, expected, atol=1e-12)
     np.testing.assert_allclose(found, found.T, atol=1e-12)

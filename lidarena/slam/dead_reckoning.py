@@ -1,0 +1,95 @@
+"""Dead reckoning, ``slam="odometry"``: mapping with the odometry's pose, what SLAM is measured against."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.jit import leaf, take_next
+from lidarena.slam.estimator import EstimatorSettings, Sensing, sense
+from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
+from lidarena.slam.occupancy import OccupancyMaps
+from lidarena.slam.rbpf.particle_filter_state import FilterParameters
+from lidarena.slam.scan_outline import Outlines
+from lidarena.slam.uncertainty import COVARIANCE_FLOOR, compound_covariance, d_optimality
+from lidarena.world.odometry import deviations, move
+
+
+class DeadReckoningEstimator(KnownPoseEstimator):
+    """Adds up the odometry and traces scans from where that leads; nothing ever corrects it.
+
+    The covariance is that of gmapping's motion noise, propagated to first order from reading to reading, plus the floor
+    that every estimator has: D-optimality means the same as with the particle filter.
+
+    Args:
+        settings: What it is made for.
+
+    Attributes:
+        drift: (worlds, 3, 3) the covariance without the floor.
+    """
+
+    def __init__(self, settings: EstimatorSettings) -> None:
+        super().__init__(settings)
+        self.drift = np.zeros((settings.worlds, 3, 3))
+
+    def start(
+        self,
+        world: int,
+        plan: int,
+        origin: NDArray[np.float64],
+        pose: NDArray[np.float64],
+        rng: np.random.Generator,
+    ) -> None:
+        """Begin an episode in one world, certain of the pose."""
+        super().start(world, plan, origin, pose, rng)
+        self.drift[world] = 0.0
+
+    def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
+        """Read the sensors, add up the odometry and map, world after world."""
+        sense_and_reckon(
+            sensing, counter, last, thread, self.settings.resolution, self.parameters, self.estimate, self.drift,
+            self.covariance, self.d_optimality, self.since, self.maps, self.outlines,
+        )  # fmt: skip
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """The belief, and the covariance without the floor."""
+        return super().arrays() | {"drift": self.drift}
+
+
+@leaf
+def sense_and_reckon(
+    sensing: Sensing,
+    counter: NDArray[np.int64],
+    last: int,
+    thread: int,
+    resolution: float,
+    parameters: FilterParameters,
+    estimate: NDArray[np.float64],
+    drift: NDArray[np.float64],
+    covariance: NDArray[np.float64],
+    d_optimalities: NDArray[np.float64],
+    since: NDArray[np.float64],
+    maps: OccupancyMaps,
+    outlines: Outlines,
+) -> None:
+    """Read the sensors, reckon and map, world after world from a counter (1,) that the threads share.
+
+    ``d_optimalities`` (worlds,) is set to the D-optimality; the other arrays are those of ``DeadReckoningEstimator``.
+    """
+    w = take_next(counter)
+    while w < last:
+        sense(w, sensing)
+        reading = sensing.sensors.readings[w, 0]
+        dx, dy, dtheta = reading[0], reading[1], reading[2]
+        sx, sy, st = deviations(parameters.noise, dx, dy, dtheta)
+        compound_covariance(estimate[w], drift[w], dx, dy, sx * sx, sy * sy, st * st)
+        move(estimate[w], dx, dy, dtheta)
+        for k in range(3):
+            for j in range(3):
+                covariance[w, k, j] = drift[w, k, j] + (COVARIANCE_FLOOR[k] if j == k else 0.0)
+        d_optimalities[w] = d_optimality(covariance[w])
+        map_scan(
+            w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters, reading,
+            sensing.sensors.scans[w, 0], estimate[w], since, maps, outlines, thread,
+        )  # fmt: skip
+        w = take_next(counter)
