@@ -22,7 +22,7 @@ class RayMapper:
     def update(self, odometry, scan, time):
         dx, dy, dtheta = odometry
         cos, sin = np.cos(self.pose[2]), np.sin(self.pose[2])
-        self.pose = self.pose + [cos * dx - sin * dy, sin * dx + cos * dy, dtheta]
+        self.pose = self.pose + np.array([cos * dx - sin * dy, sin * dx + cos * dy, dtheta])
         self.covariance = self.covariance + np.hypot(dx, dy) * np.diag([1e-3, 1e-3, 4e-3])
         away = np.arange(0.0, self.lidar.max_range, 0.5 * self.grid.resolution)[:, None]
         self.mark(*np.broadcast_arrays(away, self.lidar.angles), away < scan - self.grid.resolution, 0)
