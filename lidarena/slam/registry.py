@@ -25,7 +25,7 @@ BUILT_IN = {
 def estimator_name(slam: Any) -> str:
     """Return what names an estimator: that of a dictionary, or of a class or function of one's own."""
     named = slam.get("name") if isinstance(slam, Mapping) else slam
-    return named if isinstance(named, str) else str(getattr(named, "__qualname__", repr(named)))
+    return named if isinstance(named, str) else str(getattr(named, "__name__", repr(named)))
 
 
 def check_slam(slam: Any) -> None:

@@ -44,7 +44,7 @@ class WorldEstimators(BatchEstimator):
         self.spec = ScanSpec(np.arctan2(sin, cos), settings.lidar.max_range, settings.lidar.noise)
         self.each = [make(self.spec) for _ in range(settings.worlds)]
         self._check_each()
-        self._draws = "rng" in signature(self.each[0].reset).parameters
+        self._draws = _draws(self.each[0].reset)
         self._generators = [np.random.default_rng(0) for _ in range(settings.worlds)] if self._draws else []
         self._updates = np.zeros(settings.worlds, np.int64)
 
@@ -52,15 +52,14 @@ class WorldEstimators(BatchEstimator):
         """Refuse what lacks a method, or is the same object for two worlds."""
         if len({id(one) for one in self.each}) < len(self.each):
             raise EstimatorError(f"{self._name} made the same object for two worlds; each needs one of its own")
-        for method, parameters in _METHODS.items():
-            found = getattr(self.each[0], method, None)
+        for method, names in _METHODS.items():
+            found, shown = getattr(self.each[0], method, None), f"{method}({', '.join(names)})"
             if not callable(found):
-                shown = f"{method}({', '.join(parameters)})"
                 raise EstimatorError(f"{self._name} made {_kind(self.each[0])}, which has no method {shown}")
+            own = {"rng": None} if method == "reset" and _draws(found) else {}
             try:
-                signature(found).bind(*parameters)
+                signature(found).bind(*names, **own)
             except TypeError as error:
-                shown = f"{method}({', '.join(parameters)})"
                 raise EstimatorError(f"{self._name} has a method {method} that cannot be called as {shown}") from error
 
     def start(
@@ -186,6 +185,11 @@ class WorldEstimators(BatchEstimator):
             if self._draws:  # reset may have drawn from it
                 words = generator_from_words(saved["own_generators"][world])
                 self._generators[world].bit_generator.state = words.bit_generator.state
+
+
+def _draws(reset: Callable[..., Any]) -> bool:
+    """Whether a ``reset`` asks for a generator."""
+    return "rng" in signature(reset).parameters
 
 
 def _kind(thing: Any) -> str:

@@ -18,6 +18,7 @@ KEYWORDS: list[dict[str, Any]] = [
     {},
     {"observation": "map", "reward": "d_optimality", "start": "random"},
     {"slam": "truth", "action": "continuous", "reward": "combined"},
+    {"slam": "odometry"},
 ]
 
 
@@ -69,7 +70,7 @@ def together(count: int, keywords: dict[str, Any]) -> list[list[bytes]]:
     return records
 
 
-@pytest.mark.parametrize("keywords", KEYWORDS, ids=["default", "map", "truth"])
+@pytest.mark.parametrize("keywords", KEYWORDS, ids=["default", "map", "truth", "odometry"])
 def test_world_i_of_any_batch_equals_the_single_environment_with_its_seed(keywords: dict[str, Any]) -> None:
     singles = {seed: alone(seed, keywords) for seed in (0, 1, 6, 40, 63)}
     for count in (1, 2, 7, 64):
