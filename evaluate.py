@@ -10,6 +10,7 @@ import sys
 from rich.console import Console
 
 from lidarena.base.errors import LidarenaError
+from lidarena.base.terminal import make_output_printable
 from lidarena.base.yaml_config import load_config
 from lidarena.evaluation import Comparison, ComparisonConfig, EpisodeError, compare
 from lidarena.evaluation.tables import note, terminal_table
@@ -19,6 +20,7 @@ from lidarena.evaluation.team_planning.team_tables import compare_planners, prin
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a comparison; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
+    make_output_printable()
     options = _parser().parse_args(arguments)
     overrides = [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
     out, err = Console(), Console(stderr=True)
@@ -32,8 +34,8 @@ def main(arguments: list[str] | None = None) -> int:
     except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
-    except (EpisodeError, OSError) as error:
-        print(error, getattr(error, "report", ""), sep="\n", end="", file=sys.stderr)
+    except EpisodeError as error:
+        print(error, error.report, sep="\n", end="", file=sys.stderr)
         return 1
     except KeyboardInterrupt:
         print("interrupted; no results were written", file=sys.stderr)

@@ -18,6 +18,7 @@ import pymunk
 from numpy.typing import NDArray
 
 import lidarena  # noqa: F401
+from lidarena.base.terminal import make_output_printable
 from lidarena.world.arenas import Arena, load_arena
 
 WORLDS, NAIVE_WORLDS, BEAMS, REACH = 64, 8, 36, 30.0
@@ -105,6 +106,7 @@ def rates(step: Callable[[Floats], Floats], worlds: int, steps: int) -> tuple[fl
 
 def main() -> None:
     """Print the table."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=3000)
     parser.add_argument("--arena", default="random", help="such as yang:u, or a family: random, u_trap")

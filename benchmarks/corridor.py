@@ -16,6 +16,7 @@ import pymunk
 from numpy.typing import NDArray
 
 import lidarena  # noqa: F401
+from lidarena.base.terminal import make_output_printable
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
 from lidarena.world.team_drawings import team_places
@@ -93,6 +94,7 @@ def rates(step: Callable[[NDArray[np.float32]], NDArray[np.float32]], robots: in
 
 def main() -> None:
     """Print the table."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--steps", type=int, default=600)
     given = parser.parse_args()

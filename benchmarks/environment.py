@@ -17,6 +17,7 @@ import pymunk
 from numpy.typing import NDArray
 
 import lidarena  # noqa: F401
+from lidarena.base.terminal import make_output_printable
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
 
@@ -98,6 +99,7 @@ def rate(step: Callable[[NDArray[np.int64]], NDArray[np.float32]], worlds: int, 
 
 def main() -> None:
     """Print the table."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--steps", type=int, default=600)
     parser.add_argument("--env", default="lidarena/Env3-v0")

@@ -11,6 +11,7 @@ import gymnasium as gym
 import numpy as np
 
 import lidarena  # noqa: F401
+from lidarena.base.terminal import make_output_printable
 from lidarena.evaluation.statistics import bootstrap
 
 WORLDS = 64
@@ -18,6 +19,7 @@ WORLDS = 64
 
 def main() -> None:
     """Print the median over all steps, and the mean over episodes of the episodes' medians."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--episodes", type=int, default=500)
     wanted = parser.parse_args().episodes

@@ -4,12 +4,16 @@ python benchmarks/field_figures.py [--out results/field_figures]
 """
 
 import argparse
+import sys
 from pathlib import Path
 
 import numpy as np
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
+from lidarena.base.errors import LidarenaError
+from lidarena.base.files import check_writable, write_figure
+from lidarena.base.terminal import make_output_printable
 from lidarena.planning.potential_field.potential_field import PotentialField, plan_path
 from lidarena.world.arenas import Arena, load_arena
 
@@ -40,7 +44,7 @@ def figure_2(folder: Path) -> Path:
         ylim=(-0.35, 3.5), xlabel="x (m)", ylabel="potential", title="Fig. 2: a goal that its neighbour keeps away"
     )
     axes.legend(loc="upper left", fontsize=9)
-    return _save(figure, folder / "fig2.png")
+    return write_figure(folder / "fig2.png", figure)
 
 
 def figure_4(folder: Path) -> Path:
@@ -54,7 +58,7 @@ def figure_4(folder: Path) -> Path:
         axes.plot(70, 70, "*", color="#E69F00", markeredgecolor="black", markersize=15, label="goal")
         axes.set(title=f"Fig. 4: {label}", xlabel="x (m)", ylabel="y (m)", aspect="equal")
         axes.legend(loc="lower right", fontsize=9)
-    return _save(figure, folder / "fig4.png")
+    return write_figure(folder / "fig4.png", figure)
 
 
 def figure_8(folder: Path) -> Path:
@@ -76,7 +80,7 @@ def figure_8(folder: Path) -> Path:
         axes.set(title=f"Fig. 8: {name}, {improved.fills} fills", xlabel="x (m)", ylabel="y (m)", aspect="equal")
         if place == 1:
             figure.legend(loc="outside lower center", ncols=5, fontsize=9)
-    return _save(figure, folder / "fig8.png")
+    return write_figure(folder / "fig8.png", figure)
 
 
 def _contours(figure: Figure, axes, field: PotentialField, bounds) -> None:  # type: ignore[no-untyped-def]
@@ -96,20 +100,21 @@ def _circles(axes, arena: Arena) -> None:  # type: ignore[no-untyped-def]
         axes.add_patch(Circle((x, y), radius, facecolor="white", edgecolor="black", linewidth=0.8, zorder=2))
 
 
-def _save(figure: Figure, path: Path) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
-    return path
-
-
-def main() -> None:
-    """Draw all three."""
+def main() -> int:
+    """Draw all three; return 0, or 2 if they cannot be written."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--out", default="results/field_figures", help="folder of the pictures")
     folder = Path(parser.parse_args().out)
-    for draw in (figure_2, figure_4, figure_8):
-        print(draw(folder))
+    try:
+        check_writable(folder / "figure")
+        for draw in (figure_2, figure_4, figure_8):
+            print(draw(folder))
+    except LidarenaError as refusal:
+        print(refusal, file=sys.stderr)
+        return 2
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

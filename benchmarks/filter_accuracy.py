@@ -17,6 +17,7 @@ import numpy as np
 from scipy.stats import chi2
 
 import lidarena
+from lidarena.base.terminal import make_output_printable
 from lidarena.envs import set_num_threads
 from lidarena.evaluation.statistics import bootstrap
 
@@ -44,6 +45,7 @@ def episode(env_id: str, policy_name: str, seed: int) -> tuple[float, float, flo
 
 def main() -> None:
     """Print mean and 95% interval over episodes."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--env", default="lidarena/Env3-v0")
     parser.add_argument("--episodes", type=int, default=20)

@@ -11,6 +11,7 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
+from lidarena.base.terminal import make_output_printable
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
@@ -66,6 +67,7 @@ def rays_per_second(lidar: Lidar, poses: NDArray[np.float64]) -> float:
 
 def main() -> None:
     """Print both tables."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--poses", type=int, default=10000, help="poses over all maps together")
     count = parser.parse_args().poses // len(PLANS)

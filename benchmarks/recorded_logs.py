@@ -15,6 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
+from lidarena.base.terminal import make_output_printable
 from lidarena.slam.logs.carmen import RecordedLog, read_log
 from lidarena.slam.logs.relations import Relations, read_relations, relation_errors
 from lidarena.slam.logs.replay import replay
@@ -54,6 +55,7 @@ def run(log: RecordedLog, relations: Sequence[Relations], seeds: int, particles:
 
 def main() -> int:
     """Run all logs that are there."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--logs", type=Path, default=DATA, help="folder of NAME.log[.gz], NAME*.relations")
     parser.add_argument("--seeds", type=int, default=5)

@@ -24,6 +24,7 @@ from environment import Wanderer
 from numpy.typing import NDArray
 
 import lidarena
+from lidarena.base.terminal import make_output_printable
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
 
@@ -153,6 +154,7 @@ def rate(step: Step, worlds: int, seconds: float) -> float:
 
 def main() -> None:
     """Print the table."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--seconds", type=float, default=10.0)
     parser.add_argument("--env", default="lidarena/Env1-v0")

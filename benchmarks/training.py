@@ -12,11 +12,13 @@ from environment import NaiveWorlds, rate
 
 from lidarena import agents
 from lidarena.agents.training_config import TrainingConfig
+from lidarena.base.terminal import make_output_printable
 from lidarena.world.load import load_floorplan
 
 
 def main() -> None:
     """Print both rates; the training's is that of the whole run, from its first step to its last checkpoint."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--config", default="configs/train/quick.yaml")
     parser.add_argument("--steps", type=int, default=400_000)

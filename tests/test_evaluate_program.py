@@ -1,6 +1,7 @@
 """The command line: from a file to a folder, and refusals with exit code 2."""
 
 import json
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -71,6 +72,7 @@ def test_a_second_comparison_keeps_the_first(file: str, tmp_path: Path, capsys: 
         (["--set", f"envs=['{HERE}:fake/Coridor-v0']"], "did you mean 'fake/Corridor-v0'"),
         (["--set", "envs.0.keywords={slipp: 1}"], "did you mean 'slip'"),
         (["--out", str(ROOT)], "is a folder without results.json"),
+        (["--out", "evaluate.py/deeper/results"], "'evaluate.py/deeper/results' cannot be written: "),
     ],
 )
 def test_refusals(file: str, arguments: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
@@ -104,3 +106,25 @@ def test_ctrl_c_ends_quietly(file: str, monkeypatch: pytest.MonkeyPatch, capsys:
     monkeypatch.setattr(evaluate, "compare", interrupted)
     assert evaluate.main(["--config", file]) == 130
     assert capsys.readouterr().err == "interrupted; no results were written\n"
+
+
+def test_a_full_disk_is_told_in_one_sentence(
+    file: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("lidarena.evaluation.comparison.write_results", full)
+    assert evaluate.main(["--config", file, "--set", "pictures=false", "episodes=1"]) == 2
+    last = capsys.readouterr().err.splitlines()[-1]
+    assert last == f"'{tmp_path / 'results'}' cannot be written: No space left on device"
+    assert [path.name for path in tmp_path.iterdir()] == ["comparison.yaml"]
+
+
+def test_a_terminal_that_knows_ascii_only_gets_the_table(file: str, tmp_path: Path) -> None:
+    command = [sys.executable, "-W", "error", "evaluate.py", "--config", file, "--set", "episodes=1", "pictures=false"]
+    environment = os.environ | {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
+    done = subprocess.run(command, cwd=ROOT, env=environment, capture_output=True, text=True, timeout=300, check=False)
+    assert done.returncode == 0, done.stderr
+    assert done.stdout.isascii() and "Corridor - 1 episode each" in done.stdout and "D-optimality" in done.stdout
+    assert "tables:" in done.stdout and (tmp_path / "results" / RESULTS_FILE).is_file()

@@ -43,6 +43,13 @@ class TeamError(LidarenaError):
     """Starts and goals that no team can have, or options of a team's planner that do not exist."""
 
 
+class WriteError(LidarenaError, OSError):
+    """A file or folder that cannot be written: its place is not writable, full, or something else; an OSError too."""
+
+    def __str__(self) -> str:
+        return str(self.args[0])
+
+
 def suggest(word: str, allowed: Iterable[str]) -> str:
     """Return the end of a refusal: what is allowed, and the nearest right spelling of ``word``.
 

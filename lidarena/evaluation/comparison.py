@@ -56,7 +56,7 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
     Raises:
         LidarenaError: Something in the configuration cannot be had; mostly within seconds.
         EpisodeError: An environment or a policy raised.
-        OSError: The place of the results is not writable or full.
+        WriteError: The place of the results is not writable or full.
     """
     console = console or Console(quiet=True)
     check_folder(config.folder)

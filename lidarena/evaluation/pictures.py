@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from lidarena.base.files import write_figure
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import Episode
 from lidarena.evaluation.palette import LINES
@@ -59,12 +60,12 @@ def draw_pictures(cells: Sequence[Sequence[Cell]], folder: Path) -> list[Path]:
     curves = [row for row in cells if all(len(cell.curves) == len(cell.episodes) for cell in row)]
     paths = []
     if drawn:
-        paths.append(_save(overview(drawn), folder / "overview.png"))
+        paths.append(write_figure(folder / "overview.png", overview(drawn)))
     if curves:
-        paths.append(_save(progress(curves), folder / "progress.png"))
+        paths.append(write_figure(folder / "progress.png", progress(curves)))
     for row in drawn:
         for cell in row:
-            paths.append(_save(single(cell), folder / place_of(cell.env, cell.policy, "png")))
+            paths.append(write_figure(folder / place_of(cell.env, cell.policy, "png"), single(cell)))
     return paths
 
 
@@ -173,9 +174,3 @@ def _figure(width: float, height: float) -> "Figure":
 
     # more room than by default: the layout does not see how far the axes' labels hang down into a legend
     return Figure(figsize=(width, height), dpi=DPI, layout=ConstrainedLayoutEngine(h_pad=0.07))
-
-
-def _save(figure: "Figure", path: Path) -> Path:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)  # a bare Figure renders PNG with Agg
-    return path

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.files import replace_folder
+from lidarena.base.files import check_writable, replace_folder
 from lidarena.base.versions import library_versions
 from lidarena.evaluation.comparison_config import ComparisonConfig
 from lidarena.evaluation.episodes import Episode
@@ -149,7 +149,9 @@ def check_folder(folder: Path) -> None:
 
     Raises:
         ConfigError: It is a file, or a folder with other things in it.
+        WriteError: Nothing can be written there.
     """
+    check_writable(folder)
     if folder.is_dir() and ((folder / RESULTS_FILE).is_file() or not any(folder.iterdir())):
         return
     if folder.exists():
@@ -169,7 +171,7 @@ def write_results_folder(folder: Path, fill: Callable[[Path], None]) -> Path | N
 
     Raises:
         ConfigError: See `check_folder`.
-        OSError: The place is not writable or full.
+        WriteError: The place is not writable or full.
     """
     check_folder(folder)
     earlier = replace_folder(folder, fill)

@@ -16,6 +16,8 @@ from numpy.typing import NDArray
 
 from lidarena.agents.learning_curve import FILE
 from lidarena.base.errors import ConfigError, LidarenaError
+from lidarena.base.files import check_writable, write_figure
+from lidarena.base.terminal import make_output_printable
 from lidarena.evaluation.palette import LINES
 
 if TYPE_CHECKING:
@@ -116,21 +118,18 @@ def _draw(axes: "Axes", kind: Trainings, column: str, colour: str) -> None:
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Draw the curves; return 0, 2 for a refusal, 1 if the picture cannot be written."""
+    """Draw the curves; return 0, or 2 for a refusal."""
     parser = argparse.ArgumentParser(prog="python -m lidarena.evaluation.reward_curves", description=__doc__)
     parser.add_argument("trainings", nargs="+", metavar="LABEL=FOLDER,FOLDER", help="trainings that differ by the seed")
     parser.add_argument("--out", default="reward_curves.png", help="picture to write (PNG)")
+    make_output_printable()
     options = parser.parse_args(arguments)
     try:
-        figure = draw_curves([Trainings.parse(text) for text in options.trainings])
-        Path(options.out).parent.mkdir(parents=True, exist_ok=True)
-        figure.savefig(options.out)
+        check_writable(options.out)
+        write_figure(options.out, draw_curves([Trainings.parse(text) for text in options.trainings]))
     except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
-    except OSError as error:
-        print(f"{options.out!r} cannot be written: {error}", file=sys.stderr)
-        return 1
     print(f"picture:  {options.out}")
     return 0
 

@@ -1,6 +1,5 @@
 """All episodes of a comparison on all cores, in an order and with results that do not depend on the number of cores."""
 
-import multiprocessing
 import os
 import signal
 import sys
@@ -18,6 +17,7 @@ import cv2
 import numba
 
 from lidarena.base.errors import LidarenaError
+from lidarena.base.worker_processes import worker_pool
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
 from lidarena.evaluation.participants import make_participants
@@ -164,9 +164,7 @@ def _in_this_process(tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Fa
 
 @contextmanager
 def _in_processes(tasks: Sequence[Task], count: int) -> Iterator[Iterator[tuple[int, Episode | _Failure]]]:
-    # Spawned, not forked: torch and numba keep threads that a fork would copy in a broken state.
-    context = multiprocessing.get_context("spawn")
-    pool = ProcessPoolExecutor(count, mp_context=context, initializer=_prepare_worker)
+    pool = worker_pool(count, _prepare_worker)
     try:
         yield _as_they_end(pool, tasks)
     finally:

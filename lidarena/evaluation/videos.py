@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 from PIL import Image
 
-from lidarena.base.errors import ConfigError
+from lidarena.base.errors import ConfigError, WriteError
 from lidarena.evaluation.recording import Env
 
 SPEED = 8
@@ -50,11 +50,10 @@ class VideoRecorder:
     ) -> None:
         if self._writer is not None:
             self._writer.release()
+            if kind is None and not cv2.VideoCapture(str(self.path)).isOpened():  # the writer itself says nothing
+                raise WriteError(f"{str(self.path)!r} cannot be written: the disk is full, or the video is torn")
         if self._stills and kind is None:
-            duration = round(1000 * self._stride / self._fps)
-            self._stills[0].save(
-                self.path, save_all=True, append_images=self._stills[1:], duration=max(20, duration), loop=0
-            )
+            self._save_gif()
 
     def add(self, env: Env) -> None:
         """Append what the environment renders now, one time in `STEPS_PER_FRAME`.
@@ -75,6 +74,13 @@ class VideoRecorder:
         else:
             self._add_to_mp4(frame)
         self._count += 1
+
+    def _save_gif(self) -> None:
+        duration = max(20, round(1000 * self._stride / self._fps))
+        try:
+            self._stills[0].save(self.path, save_all=True, append_images=self._stills[1:], duration=duration, loop=0)
+        except OSError as error:
+            raise WriteError(f"{str(self.path)!r} cannot be written: {error.strerror}") from error
 
     def _add_to_gif(self, frame: NDArray[np.uint8]) -> None:
         if self._count % self._stride:

@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from lidarena.base.errors import LidarenaError
+from lidarena.base.terminal import make_output_printable
 from lidarena.slam.logs.carmen import read_log
 from lidarena.slam.logs.relations import RelationErrors, check_overlap, read_relations, relation_errors
 from lidarena.slam.logs.replay import Progress as Advance
@@ -22,6 +23,7 @@ from lidarena.slam.logs.replay_files import check_folder, save_replay
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a command; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
+    make_output_printable()
     options = _parser().parse_args(arguments)
     out = options.out or Path("results") / Path(options.log).name.split(".")[0]
     try:
@@ -29,9 +31,6 @@ def main(arguments: list[str] | None = None) -> int:
     except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
-    except OSError as error:
-        print(f"the results cannot be written to {str(out)!r}: {error}", file=sys.stderr)
-        return 1
     except KeyboardInterrupt:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130

@@ -8,6 +8,7 @@ should be at that time is recorded.
 """
 
 import argparse
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -15,6 +16,9 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.errors import LidarenaError
+from lidarena.base.files import check_writable, write_figure
+from lidarena.base.terminal import make_output_printable
 from lidarena.baselines.corridor.deviation_model import BIN, MODEL_FILE, DeviationModel
 from lidarena.baselines.corridor.team_planners import PrioritizedFleet
 from lidarena.envs.corridor.parallel_env import CorridorEnv
@@ -72,12 +76,12 @@ def draw_model(model: DeviationModel, path: Path) -> None:
     axes.set_ylabel(f"probability (ranges of {BIN:g} m)")
     axes.set_title(f"Deviation of a robot from its plan, {model.runs} runs of two robots")
     axes.legend(frameon=False)
-    path.parent.mkdir(parents=True, exist_ok=True)
-    figure.savefig(path)
+    write_figure(path, figure)
 
 
-def main(arguments: list[str] | None = None) -> None:
-    """Learn, store and draw the model."""
+def main(arguments: list[str] | None = None) -> int:
+    """Learn, store and draw the model; return 0, or 2 for a refusal."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description="Learn how far robots stray from their plans.")
     parser.add_argument(
         "--runs", type=int, default=RUNS, help="two-robot executions; Bennewitz & Burgard's 28 by default"
@@ -88,14 +92,25 @@ def main(arguments: list[str] | None = None) -> None:
         "--picture", type=Path, default=Path("results/deviation.png"), help="like Bennewitz & Burgard's Fig. 2"
     )
     given = parser.parse_args(arguments)
-    distances = record_runs(given.runs, given.seed)
-    model = DeviationModel.fitted(distances, given.runs)
-    model.save(given.out)
-    draw_model(model, given.picture)
+    try:
+        _learn(given.runs, given.seed, given.out, given.picture)
+    except LidarenaError as refusal:
+        print(refusal, file=sys.stderr)
+        return 2
+    return 0
+
+
+def _learn(runs: int, seed: int, out: Path, picture: Path) -> None:
+    for path in (out, picture):
+        check_writable(path)
+    distances = record_runs(runs, seed)
+    model = DeviationModel.fitted(distances, runs)
+    model.save(out)
+    draw_model(model, picture)
     mean, tail = distances.mean(), np.quantile(distances, 0.95)
-    print(f"{given.runs} runs, {len(distances)} distances: mean {mean:.2f} m, 95% below {tail:.2f} m")
-    print(f"model:   {given.out}\npicture: {given.picture}")
+    print(f"{runs} runs, {len(distances)} distances: mean {mean:.2f} m, 95% below {tail:.2f} m")
+    print(f"model:   {out}\npicture: {picture}")
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -3,10 +3,9 @@
 python evaluate.py --config configs/compare/team_planning.yaml
 """
 
-import multiprocessing
 import time
 from collections.abc import Callable, Iterable, Iterator, Sequence
-from concurrent.futures import ProcessPoolExecutor, as_completed
+from concurrent.futures import as_completed
 from dataclasses import dataclass, field
 from functools import lru_cache, partial
 from pathlib import Path
@@ -18,6 +17,7 @@ from pydantic import Field
 from rich.console import Console
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.worker_processes import worker_pool
 from lidarena.base.yaml_config import ConfigModel
 from lidarena.evaluation.progress_report import report_progress
 from lidarena.evaluation.runner import available_cores
@@ -126,8 +126,7 @@ def _in_processes(tasks: Sequence[Task], workers: int) -> Iterator[tuple[int, li
     if workers == 1:
         yield from ((index, task()) for index, task in enumerate(tasks))
         return
-    # spawned, not forked: numba and others keep threads that a fork would copy in a broken state
-    with ProcessPoolExecutor(workers, mp_context=multiprocessing.get_context("spawn")) as pool:
+    with worker_pool(workers) as pool:
         futures = {pool.submit(task): index for index, task in enumerate(tasks)}
         for future in as_completed(futures):
             yield futures[future], future.result()

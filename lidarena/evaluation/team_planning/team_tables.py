@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from rich.console import Console
 from rich.table import Table
 
+from lidarena.base.files import write_figure
 from lidarena.base.versions import library_versions
 from lidarena.evaluation.results import RESULTS_FILE, check_folder, write_results_folder
 from lidarena.evaluation.statistics import Interval, bootstrap, share_interval
@@ -184,7 +185,7 @@ def draw(rows: Sequence[Row], path: Path) -> None:
         axes.set_title(title, fontsize=10)
         axes.set_xlabel("robots")
     panels[2].legend(fontsize=8, frameon=False)
-    figure.savefig(path)
+    write_figure(path, figure)
 
 
 def _draw_optimum(axes: "Axes", rows: Sequence[Row]) -> None:

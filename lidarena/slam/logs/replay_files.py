@@ -1,6 +1,5 @@
 """The folder of a replay: map, trajectory, picture and results, all of them at once or none."""
 
-import io
 import json
 import os
 from pathlib import Path
@@ -9,7 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.files import replace_folder, write_bytes, write_text
+from lidarena.base.files import check_writable, replace_folder, write_figure, write_text
 from lidarena.slam.logs.carmen import LogError, RecordedLog
 from lidarena.slam.logs.relations import RelationErrors
 from lidarena.slam.logs.replay import Replay
@@ -25,9 +24,10 @@ def check_folder(folder: str | os.PathLike[str]) -> None:
 
     Raises:
         LogError: It is a file, or a folder with anything but an earlier replay in it.
-        OSError: It cannot be looked into.
+        WriteError: It cannot be written to.
     """
     place = Path(folder)
+    check_writable(place)
     if place.exists() and not place.is_dir():
         raise LogError(f"{str(place)!r} is a file; a folder is needed for the results")
     if place.is_dir() and (others := sorted(set(os.listdir(place)) - set(FILES))):
@@ -54,16 +54,15 @@ def save_replay(
 
     Raises:
         LogError: The folder holds something else.
-        OSError: The disk is full or the place is not writable; what was there is left as it was.
+        WriteError: The disk is full or the place is not writable; what was there is left as it was.
     """
     check_folder(folder)
-    picture = io.BytesIO()
-    draw_replay(log, result).savefig(picture, format="png")
+    picture = draw_replay(log, result)
 
     def fill(there: Path) -> None:
         save_map(there / "map.yaml", result.map.occupancy, result.map.resolution, result.map.origin)
         save_tum(there / "trajectory.tum", result.trajectory)
-        write_bytes(there / "picture.png", picture.getvalue())
+        write_figure(there / "picture.png", picture)
         write_text(there / "results.json", json.dumps(results(result, errors), indent=2) + "\n")
 
     return replace_folder(os.fspath(folder), fill)

@@ -181,7 +181,7 @@ def test_torn_lines_are_skipped_if_asked(tmp_path: Path, capsys: pytest.CaptureF
 def test_a_place_that_cannot_be_written_is_told(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (tmp_path / "file").write_text("")
     short = replace(LOG, scan_readings=LOG.scan_readings[:5], ranges=LOG.ranges[:5])
-    assert main([*arguments(tmp_path, short)[:2], "--out", str(tmp_path / "file" / "out")]) == 1
+    assert main([*arguments(tmp_path, short)[:2], "--out", str(tmp_path / "file" / "out")]) == 2
     assert "cannot be written" in capsys.readouterr().err
 
 

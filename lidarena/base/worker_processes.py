@@ -1,0 +1,34 @@
+"""Processes that work for this one and end when it does."""
+
+import multiprocessing
+import multiprocessing.connection
+import os
+import threading
+from collections.abc import Callable
+from concurrent.futures import ProcessPoolExecutor
+
+
+def worker_pool(count: int, prepare: Callable[[], None] | None = None) -> ProcessPoolExecutor:
+    """Return a pool of processes that end as soon as this one is gone, even if it was killed.
+
+    They are spawned, not forked: torch and numba keep threads that a fork would copy in a broken state.
+
+    Args:
+        count: Number of processes.
+        prepare: Called once in each of them; a function of a module.
+    """
+    context = multiprocessing.get_context("spawn")
+    return ProcessPoolExecutor(count, mp_context=context, initializer=_begin, initargs=(prepare,))
+
+
+def _begin(prepare: Callable[[], None] | None) -> None:
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="end with parent").start()
+    if prepare is not None:
+        prepare()
+
+
+def _end_with(sentinel: int) -> None:
+    multiprocessing.connection.wait([sentinel])
+    os._exit(1)  # no clean-up: there is nobody to report to, and whatever still runs may hold any lock
