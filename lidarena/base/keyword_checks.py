@@ -64,14 +64,14 @@ def check_range(name: str, value: Any, low: float, high: float, whole: bool = Fa
         raise ConfigError(f"{name} = {value!r} must be a whole number")
 
 
-def check_step_limit(value: Any) -> None:
+def check_step_limit(value: Any, name: str = "max_episode_steps") -> None:
     """Refuse what is neither a number of steps nor -1, which means never.
 
     Raises:
         ConfigError: It names what is allowed.
     """
     if isinstance(value, bool) or not isinstance(value, int) or (value != -1 and not 1 <= value <= 10**9):
-        raise ConfigError(f"max_episode_steps = {value!r} must be a whole number from 1 to 1e+09, or -1 for never")
+        raise ConfigError(f"{name} = {value!r} must be a whole number from 1 to 1e+09, or -1 for never")
 
 
 def check_switch(name: str, value: Any) -> None:
@@ -87,15 +87,20 @@ def check_switch(name: str, value: Any) -> None:
 Function = TypeVar("Function", bound=Callable[..., Any])
 
 
-def takes_keywords_of(options: type[Any]) -> Callable[[Function], Function]:
+def takes_keywords_of(options: type[Any], without: Iterable[str] = ()) -> Callable[[Function], Function]:
     """Return a decorator that shows a dataclass's fields as the keywords of a function that ends in ``**keywords``.
 
     Type checkers read them from the ``TypedDict`` in the annotation; an interactive session reads the signature.
+
+    Args:
+        options: The dataclass.
+        without: Those of its fields that the function does not take.
     """
     hints = get_type_hints(options)
     shown = [
         Parameter(field.name, Parameter.KEYWORD_ONLY, default=field.default, annotation=hints[field.name])
         for field in fields(options)
+        if field.name not in set(without)
     ]
 
     def decorate(function: Function) -> Function:

@@ -1,6 +1,7 @@
 """What every family's single environment has in common: a batch of one world."""
 
-from typing import Any
+from collections.abc import Callable
+from typing import Any, TypeVar
 
 import gymnasium as gym
 import numpy as np
@@ -94,3 +95,20 @@ class SingleWorld(gym.Env[Any, Any]):
     def close(self) -> None:
         """Close the window, if there is one."""
         self.episodes.close()
+
+
+World = TypeVar("World", bound=SingleWorld)
+
+
+def entry_point(kind: type[World]) -> Callable[..., World]:
+    """Return what ``gym.make`` calls for a class of environments.
+
+    Gymnasium's own ``TimeLimit`` truncates there, and its ``max_episode_steps`` never gets here. From the metadata it
+    learns which render modes need a wrapper of its own, such as ``"rgb_array_list"``.
+    """
+
+    def make_single(**keywords: Any) -> World:
+        return kind(**{"max_episode_steps": -1, **keywords})
+
+    make_single.metadata = kind.metadata  # type: ignore[attr-defined]
+    return make_single

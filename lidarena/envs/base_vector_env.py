@@ -129,8 +129,8 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
                 f"the episode of environment {int(np.argmax(over))} has ended; "
                 "call reset(options={'reset_mask': mask}) for it before the next step()"
             )
-        rewards, terminated, truncated = self.episodes.step(actions)
-        if over.any():  # what the worlds did with these actions is forgotten: their next episode begins here
+        rewards, terminated, truncated = self.episodes.step(_without(actions, over) if over.any() else actions)
+        if over.any():  # what these worlds did is forgotten: their next episode begins here
             self._begin(self._worlds_of(over), None)
             rewards[over], terminated[over], truncated[over] = 0.0, False, False
         self._ended = terminated | truncated
@@ -172,7 +172,13 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
         self.episodes.close()
 
     def get_state(self) -> dict[str, NDArray[Any]]:
-        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
+        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit.
+
+        Raises:
+            ResetNeeded: The environments were not reset.
+        """
+        if not self._generators:
+            raise ResetNeeded("get_state() needs episodes; call reset() first")
         arrays = {name: array.copy() for name, array in self.episodes.arrays().items()}
         arrays["generators"] = np.stack([generator_words(rng) for rng in self._generators])
         return arrays if self.autoreset_mode == AutoresetMode.SAME_STEP else arrays | {"ended": self._ended.copy()}
@@ -195,9 +201,20 @@ def whole_number_of_worlds(num_envs: Any) -> int:
     return int(num_envs)
 
 
+def _without(actions: Any, over: NDArray[np.bool_]) -> Any:
+    """The actions with 0 for the environments whose episode has ended, since nobody looks at theirs."""
+    try:
+        table = np.array(actions)
+    except ValueError:  # rows of different lengths, which the episodes refuse
+        return actions
+    if table.shape[:1] == over.shape:
+        table[over] = 0
+    return table
+
+
 def _checked_mode(mode: AutoresetMode | str) -> AutoresetMode:
     words = {word: one for one in AutoresetMode for word in (one.value, one.name, one.name.lower())}
-    if not isinstance(mode, AutoresetMode) and mode not in words:
+    if not isinstance(mode, AutoresetMode) and not (isinstance(mode, str) and mode in words):
         allowed = suggest(str(mode), [one.value for one in AutoresetMode])
         raise ConfigError(f"autoreset_mode = {mode!r} is not known{allowed}")
     chosen = mode if isinstance(mode, AutoresetMode) else words[mode]

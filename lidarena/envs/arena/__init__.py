@@ -1,8 +1,7 @@
 """Goal reaching among obstacles: the arena family."""
 
-from typing import Any
-
 from lidarena.envs.arena.env import ArenaEnv, BatchedArena
+from lidarena.envs.base_env import entry_point
 from lidarena.envs.registration import Family, Registration
 
 __all__ = ["FAMILY", "ArenaEnv", "BatchedArena"]
@@ -11,10 +10,7 @@ EPISODE_STEPS = 500
 """Five times what it takes to cross an arena."""
 
 
-def make_single(**keywords: Any) -> ArenaEnv:
-    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
-    return ArenaEnv(**{"max_episode_steps": -1, **keywords})
-
+make_single = entry_point(ArenaEnv)
 
 FAMILY = Family(
     "arena",

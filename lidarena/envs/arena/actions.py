@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ActionError
+from lidarena.envs.action_bounds import within_bounds
 
 HEADINGS = 16
 """Of the discrete actions; number k turns by k · 22.5 degrees to the left."""
@@ -37,8 +38,8 @@ def turns_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
         raise ActionError(
             f"action {_show(actions, worlds)} is not an array of one number, the turn over pi, from -1 to 1"
         )
-    numbers = values[:, 0].astype(np.float64)
-    if not (np.abs(numbers) <= 1.0).all():
+    numbers = within_bounds(values[:, 0].astype(np.float64))
+    if numbers is None:
         raise ActionError(f"action {_show(actions, worlds)} is NaN or out of range; a number from -1 to 1 is allowed")
     return math.pi * numbers
 

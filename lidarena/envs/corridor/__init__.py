@@ -3,6 +3,7 @@
 from typing import Any
 
 from lidarena.base.errors import ConfigError
+from lidarena.envs.base_env import entry_point
 from lidarena.envs.corridor.central_env import BatchedCorridor, CorridorCentralEnv
 from lidarena.envs.corridor.shared_env import SharedCorridor
 from lidarena.envs.registration import Family, Registration
@@ -15,9 +16,7 @@ SHARED_ID = "lidarena/CorridorShared-v0"
 """Of the batch of robots that share a policy; there is no single environment of them."""
 
 
-def make_single(**keywords: Any) -> CorridorCentralEnv:
-    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
-    return CorridorCentralEnv(**{"max_episode_steps": -1, **keywords})
+make_single = entry_point(CorridorCentralEnv)
 
 
 def refuse_single(**keywords: Any) -> CorridorCentralEnv:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ActionError
+from lidarena.envs.action_bounds import within_bounds
 
 TOP_SPEED = 0.5
 """Speed of the continuous action 1 [m/s]; -1 drives backwards."""
@@ -44,8 +45,8 @@ def commands_of(kind: str, actions: Any, count: int) -> NDArray[np.float64]:
         return commands
     if values.shape != (count, 2) or values.dtype.kind not in "iuf":
         raise ActionError(f"{_show(actions, count)} not a pair of numbers, speed and turn rate, from -1 to 1")
-    numbers = values.astype(np.float64)
-    if not (np.abs(numbers) <= 1.0).all():
+    numbers = within_bounds(values.astype(np.float64))
+    if numbers is None:
         raise ActionError(f"{_show(actions, count)} NaN or out of range; numbers from -1 to 1 are allowed")
     return numbers * (TOP_SPEED, TOP_TURN_RATE)
 

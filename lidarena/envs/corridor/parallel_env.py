@@ -6,6 +6,7 @@ fleet = corridor_v0.parallel_env(map="office", robots=4)
 """
 
 from collections.abc import Mapping
+from dataclasses import fields
 from typing import Any, Unpack
 
 import gymnasium as gym
@@ -18,7 +19,8 @@ from pettingzoo.utils import parallel_to_aec, wrappers
 
 from lidarena.base.errors import ActionError, ConfigError, suggest
 from lidarena.base.generator_state import generator_from_words, generator_words
-from lidarena.base.keyword_checks import takes_keywords_of
+from lidarena.base.keyword_checks import check_names, check_step_limit, takes_keywords_of
+from lidarena.envs.action_bounds import within_bounds
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
@@ -27,6 +29,8 @@ from lidarena.envs.infos import Info, of_world
 from lidarena.world.floorplan import Floorplan
 
 __all__ = ["CorridorEnv", "agent_name", "env", "parallel_env", "raw_env"]
+
+_KEYWORDS = [field.name for field in fields(CorridorOptions) if field.name != "max_episode_steps"]
 
 
 def agent_name(robot: int) -> str:
@@ -121,7 +125,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
     }
     family = "corridor"
 
-    @takes_keywords_of(CorridorOptions)
+    @takes_keywords_of(CorridorOptions, without=["max_episode_steps"])
     def __init__(self, max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]) -> None:
         """Make one world.
 
@@ -134,6 +138,9 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         """
         if "max_episode_steps" in keywords:
             raise ConfigError("keyword 'max_episode_steps' is called 'max_cycles' here, as everywhere in PettingZoo")
+        check_names("corridor_v0", keywords, ["max_cycles", *_KEYWORDS])
+        if max_cycles is not None:
+            check_step_limit(max_cycles, "max_cycles")
         options = CorridorOptions.checked({**keywords, "max_episode_steps": max_cycles})
         self.episodes = CorridorEpisodes(1, options)
         self.max_cycles, self.render_mode = options.max_episode_steps, options.render_mode
@@ -225,7 +232,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
             value = np.empty(0, object)
         if space.shape != value.shape or value.dtype.kind not in ("iu" if space.shape == () else "iuf"):
             raise ActionError(f"the action {action!r} of agent {name!r} is not of its action space {space}")
-        inside = 0 <= value < 7 if space.shape == () else bool((np.abs(value) <= 1.0).all())
+        inside = 0 <= value < 7 if space.shape == () else within_bounds(value.astype(np.float64)) is not None
         if not inside:
             raise ActionError(f"the action {action!r} of agent {name!r} is NaN or outside of its action space {space}")
         return value
@@ -285,13 +292,13 @@ def _copy(space: gym.Space[Any]) -> gym.Space[Any]:
     return gym.spaces.Box(space.low, space.high, dtype=np.float32)
 
 
-@takes_keywords_of(CorridorOptions)
+@takes_keywords_of(CorridorOptions, without=["max_episode_steps"])
 def parallel_env(max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]) -> CorridorEnv:
     """Make the environment in PettingZoo's parallel form; see ``CorridorEnv``."""
     return CorridorEnv(max_cycles, **keywords)
 
 
-@takes_keywords_of(CorridorOptions)
+@takes_keywords_of(CorridorOptions, without=["max_episode_steps"])
 def raw_env(
     max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]
 ) -> AECEnv[str, NDArray[np.float32], Any]:
@@ -299,7 +306,7 @@ def raw_env(
     return parallel_to_aec(parallel_env(max_cycles, **keywords))
 
 
-@takes_keywords_of(CorridorOptions)
+@takes_keywords_of(CorridorOptions, without=["max_episode_steps"])
 def env(max_cycles: int | None = None, **keywords: Unpack[CorridorKeywords]) -> AECEnv[str, NDArray[np.float32], Any]:
     """Make the environment in PettingZoo's agent-by-agent form (AEC), by PettingZoo's conversion."""
     return wrappers.OrderEnforcingWrapper(raw_env(max_cycles, **keywords))

@@ -1,7 +1,6 @@
 """Active SLAM: the exploration family."""
 
-from typing import Any
-
+from lidarena.envs.base_env import entry_point
 from lidarena.envs.exploration.env import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import Family, Registration
 
@@ -12,10 +11,7 @@ EPISODE_STEPS = 1000
 _MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {"lidarena/Exploration-v0": "willow_lobby"}
 
 
-def make_single(**keywords: Any) -> ExplorationEnv:
-    """Entry point of ``gym.make``, whose own ``TimeLimit`` truncates: its ``max_episode_steps`` never gets here."""
-    return ExplorationEnv(**{"max_episode_steps": -1, **keywords})
-
+make_single = entry_point(ExplorationEnv)
 
 FAMILY = Family(
     "exploration",

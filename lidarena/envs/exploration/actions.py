@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ActionError
+from lidarena.envs.action_bounds import within_bounds
 
 COMMANDS = np.array([(0.5, 0.0), (0.05, 0.3), (0.05, -0.3)])
 """DA-SLAM's forward, left and right: speed [m/s] and turn rate [rad/s]."""
@@ -45,8 +46,8 @@ def commands_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
         raise ActionError(
             f"action {_show(actions, worlds)} is not a pair of numbers, speed and turn rate, from -1 to 1"
         )
-    numbers = values.astype(np.float64)
-    if not (np.abs(numbers) <= 1.0).all():
+    numbers = within_bounds(values.astype(np.float64))
+    if numbers is None:
         raise ActionError(f"action {_show(actions, worlds)} is NaN or out of range; numbers from -1 to 1 are allowed")
     return np.stack([0.5 * TOP_SPEED * (numbers[:, 0] + 1.0), TOP_TURN_RATE * numbers[:, 1]], axis=1)
 

@@ -111,7 +111,7 @@ class ExplorationEpisodes:
         if self.options.action == "discrete":
             self._previous[:, 0] = actions / 2.0
         else:
-            self._previous[:] = 0.5 * (actions + 1.0)
+            self._previous[:] = 0.5 * (actions.clip(-1.0, 1.0) + 1.0)
 
     def observe(self) -> Any:
         """Fresh observations of all worlds."""

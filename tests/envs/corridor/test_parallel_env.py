@@ -177,7 +177,7 @@ def test_a_movingai_scenario_says_who_goes_where(tmp_path):
         ({"map": "offise"}, MapError, "did you mean 'office'"),
         ({"places": "anywhere"}, ConfigError, "places = 'anywhere'"),
         ({"starts": [(1, 1)]}, ConfigError, "starts and goals are given together"),
-        ({"max_cycles": 0}, ConfigError, "max_episode_steps = 0"),
+        ({"max_cycles": 0}, ConfigError, "max_cycles = 0"),
         ({"max_episode_steps": 50}, ConfigError, "'max_episode_steps' is called 'max_cycles' here"),
         ({"map": "env1", "places": "predefined"}, ConfigError, "no predefined places"),
         ({"robots": 30}, ConfigError, "has starts for 24; at most 24 robots"),

@@ -67,7 +67,7 @@ def test_whole_numbers_are_actions_or_refused(numbers: list[int], kind: type) ->
         ("continuous", [[0.0, 0.0, 0.0]], 1, "not a pair of numbers"),
         ("continuous", [[0.0, np.nan]], 1, "NaN or out of range"),
         ("continuous", [[0.0, np.inf]], 1, "NaN or out of range"),
-        ("continuous", [[1.0000001, 0.0]], 1, "NaN or out of range"),
+        ("continuous", [[1.00001, 0.0]], 1, "NaN or out of range"),
         ("continuous", [["a", "b"]], 1, "not a pair of numbers"),
         ("continuous", np.zeros((40, 3)), 40, r"\.\.\. is not a pair"),
     ],
