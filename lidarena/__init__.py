@@ -8,11 +8,13 @@ import importlib
 from types import ModuleType
 
 from lidarena import baselines
+from lidarena.base.old_names import keep_old_names
 from lidarena.envs import register_all
 
 __all__ = ["agents", "baselines", "evaluation"]
 __version__ = "0.1.0"
 
+keep_old_names()
 register_all()
 
 
