@@ -26,7 +26,7 @@ class RayMapper:
         self.covariance = self.covariance + np.hypot(dx, dy) * np.diag([1e-3, 1e-3, 4e-3])
         away = np.arange(0.0, self.lidar.max_range, 0.5 * self.grid.resolution)[:, None]
         self.mark(*np.broadcast_arrays(away, self.lidar.angles), away < scan - self.grid.resolution, 0)
-        self.mark(scan, self.lidar.angles, scan < self.lidar.max_range, 100)
+        self.mark(scan, self.lidar.angles, (scan > 0.0) & (scan < self.lidar.max_range), 100)
 
     def mark(self, ranges, angles, chosen, value):
         heading = self.pose[2] + angles[chosen]

@@ -171,11 +171,17 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
         """Close the window, if there is one."""
         self.episodes.close()
 
+    @property
+    def restorable(self) -> bool:
+        """Whether ``get_state`` is to be had; not where a user's own part of the worlds cannot be saved."""
+        return bool(getattr(self.episodes, "restorable", True))
+
     def get_state(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit.
 
         Raises:
             ResetNeeded: The environments were not reset.
+            LidarenaError: They are not ``restorable``; it says why.
         """
         if not self._generators:
             raise ResetNeeded("get_state() needs episodes; call reset() first")

@@ -159,8 +159,10 @@ class BatchEstimator(ABC):
         covariance: (worlds, 3, 3) of them.
         d_optimality: (worlds,) of the covariances.
         particles: (worlds, N, 3) poses, to be drawn; None where there are none.
+        restorable: Whether it can be saved by ``arrays``.
     """
 
+    restorable: bool = True
     particles: NDArray[np.float64] | None = None
 
     def __init__(self, settings: EstimatorSettings) -> None:

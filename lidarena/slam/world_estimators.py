@@ -47,6 +47,7 @@ class WorldEstimators(BatchEstimator):
         self._draws = _draws(self.each[0].reset)
         self._generators = [np.random.default_rng(0) for _ in range(settings.worlds)] if self._draws else []
         self._updates = np.zeros(settings.worlds, np.int64)
+        self.restorable = all(callable(getattr(self.each[0], name, None)) for name in ("get_state", "set_state"))
 
     def _check_each(self) -> None:
         """Refuse what lacks a method, or is the same object for two worlds."""
@@ -147,7 +148,7 @@ class WorldEstimators(BatchEstimator):
         Raises:
             EstimatorError: It has no ``get_state`` and ``set_state``, or gives no arrays.
         """
-        if not all(callable(getattr(self.each[0], method, None)) for method in ("get_state", "set_state")):
+        if not self.restorable:
             raise EstimatorError(f"{self._name} has no get_state() and set_state(), so its worlds cannot be saved")
         named = self._own_arrays()
         for world, one in enumerate(self.each):

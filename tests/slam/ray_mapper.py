@@ -26,7 +26,7 @@ class RayMapper:
         self.covariance = self.covariance + np.hypot(dx, dy) * self.drift * np.eye(3)
         away = np.arange(0.0, self.lidar.max_range, 0.5 * self.grid.resolution)[:, None]
         self.mark(*np.broadcast_arrays(away, self.lidar.angles), away < scan - self.grid.resolution, 0)
-        self.mark(scan, self.lidar.angles, scan < self.lidar.max_range, 100)
+        self.mark(scan, self.lidar.angles, (scan > 0.0) & (scan < self.lidar.max_range), 100)
 
     def mark(self, ranges: np.ndarray, angles: np.ndarray, chosen: np.ndarray, value: int) -> None:
         heading = self.pose[2] + angles[chosen]

@@ -94,6 +94,7 @@ def test_one_that_can_be_saved_continues_to_the_bit() -> None:
 def test_one_that_cannot_be_saved_says_so_when_it_is_to_be_saved() -> None:
     batch = BatchedExploration(2, slam=RayMapper, **KEYWORDS)
     batch.reset(seed=0)
+    assert not batch.restorable and BatchedExploration(2, slam=SavedMapper, **KEYWORDS).restorable
     with pytest.raises(EstimatorError, match=r"'RayMapper' has no get_state\(\) and set_state\(\), so its worlds"):
         batch.get_state()
 

@@ -159,6 +159,11 @@ class ExplorationEpisodes:
     def close(self) -> None:
         """Nothing is held."""
 
+    @property
+    def restorable(self) -> bool:
+        """Whether ``arrays`` are to be had; the estimator says so."""
+        return self.core.estimator.restorable
+
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""
         own = {"steps": self._steps, "previous": self._previous, "completeness": self._completeness}
