@@ -3,8 +3,8 @@
 python benchmarks/team_planning.py [--data ../shared/data] [--problems 100] [--only mapf speed joint certified solved]
 
 Every plan is checked by ``validate_plan``, which shares nothing with the planners. Times are processor time of one core
-with warm kernels. Maps that are not in this repository (the MovingAI benchmarks, Freiburg's building 079) are read from
-the data folder, and left out where it is absent. Figures of others: CBSH2-RTC, PBS and LaCAM3 on the same scenarios.
+with warm kernels. Freiburg's building 079, whose licence keeps it out of this repository, is read from the data folder,
+and left out where it is absent. Figures of others: CBSH2-RTC, PBS and LaCAM3 on the same scenarios.
 """
 
 import argparse
@@ -17,6 +17,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.terminal import make_output_printable
+from lidarena.evaluation.team_planning.team_experiment import SHIPPED
 from lidarena.planning import TeamPlan, plan_team, validate_plan
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
@@ -135,12 +137,12 @@ def mapf(data: Path, count: int) -> None:
     print("MovingAI, all ten random scenarios of a map, prioritized_search; cost over the lower bound")
     bars = {("room-32-32-4", 20): 1.02, ("room-32-32-4", 50): 1.15}
     for name in MAPF:
-        free = load_movingai(data / "mapf" / "map" / f"{name}.map")
+        free = load_movingai(SHIPPED / "map" / f"{name}.map")
         for robots, limit in LIMITS.items():
             answers = []
             for i in range(1, 11):
                 scenario = load_scenario(
-                    data / "mapf" / "scen-random" / f"{name}-random-{i}.scen", free, robots, f"{name}.map"
+                    SHIPPED / "scen-random" / f"{name}-random-{i}.scen", free, robots, f"{name}.map"
                 )
                 answers.append(solve(Problem(~free, *scenario, 0.0, 4), "prioritized_search", limit))
             solved = [a for a in answers if a.plan.solved]
@@ -307,7 +309,7 @@ def warm_up() -> None:
 
 
 PARTS: dict[str, tuple[Callable[[Path, int], None], bool]] = {
-    "mapf": (mapf, True),
+    "mapf": (mapf, False),
     "speed": (speed, True),
     "joint": (joint, False),
     "certified": (certified, False),
@@ -317,6 +319,7 @@ PARTS: dict[str, tuple[Callable[[Path, int], None], bool]] = {
 
 def main() -> None:
     """Print the parts that are asked for."""
+    make_output_printable()
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument(
         "--data", type=Path, default=Path(__file__).parents[2] / "shared" / "data", help="recorded maps"

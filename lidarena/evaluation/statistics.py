@@ -3,19 +3,21 @@
 Every table of this project quotes a mean with a 95% interval over episodes. The intervals are
 
 - for a measured quantity: the bias-corrected and accelerated bootstrap (BCa; Efron, "Better bootstrap confidence
-  intervals", JASA 82, 1987), with which `scipy.stats.bootstrap` agrees to rounding;
-- for a share (success, collision): Wilson's score interval, since resampling ten successes out of ten can only
-  ever give ten out of ten, an interval of no width;
+  intervals", JASA 82, 1987) of `scipy.stats.bootstrap`;
+- for a share (success, collision): Wilson's score interval, of `scipy.stats.binomtest`, since resampling ten
+  successes out of ten can only ever give ten out of ten, an interval of no width;
 - for two policies on the same seeds: the same bootstrap on the differences, episode by episode, and Newcombe's
   paired interval for the difference of two shares.
 """
 
+import math
+import warnings
 from collections.abc import Callable
 from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.special import ndtr, ndtri
+from scipy import stats
 
 Floats = NDArray[np.float64]
 Statistic = Callable[[Floats], Floats]
@@ -90,35 +92,36 @@ def bootstrap(
         return Interval(estimate, np.nan, np.nan)
     if np.all(values == values[0]):
         return Interval(estimate, estimate, estimate)
-    rows = np.random.default_rng(seed).integers(0, values.size, (resamples, values.size))
-    replicates = statistic(values[rows])
-    tails = np.array([0.5 - level / 2, 0.5 + level / 2])
-    if method == "bca":
-        tails = _bca_tails(values, statistic, estimate, replicates, tails)
-    low, high = np.quantile(replicates, tails)
-    return Interval(estimate, float(low), float(high))
+    for way in ("BCa", "percentile") if method == "bca" else ("percentile",):
+        with warnings.catch_warnings(), np.errstate(divide="ignore", invalid="ignore"):
+            warnings.simplefilter("ignore", stats.DegenerateDataWarning)  # the bounds are NaN then
+            found = stats.bootstrap(
+                (values,),
+                _without_rounding(statistic, values),
+                n_resamples=resamples,
+                vectorized=True,
+                confidence_level=level,
+                method=way,
+                rng=np.random.default_rng(seed),
+            ).confidence_interval
+        if np.isfinite(found).all():
+            break
+    return Interval(estimate, float(found.low), float(found.high))
 
 
-def _bca_tails(values: Floats, statistic: Statistic, estimate: float, replicates: Floats, tails: Floats) -> Floats:
-    """Return the percentiles that BCa reads instead of ``tails`` (Efron 1987, equation 2.3).
+def _without_rounding(statistic: Statistic, values: Floats) -> Callable[..., Floats]:
+    """The statistic rounded to far less than the samples' spread.
 
-    The bias z0 comes from the share of replicates below the estimate (half of the ties counted), the acceleration
-    from the jackknife. Where a resampled statistic cannot be corrected (no spread), ``tails`` is returned.
+    BCa counts the replicates below the estimate; sums in another order are the same number and have to tie with it.
     """
-    # Sums in another order are the same number: rounding must not break ties.
-    tie = 1e-9 * float(np.ptp(values)) + 1e-15 * float(np.abs(values).max())
-    share = (np.mean(replicates < estimate - tie) + np.mean(replicates <= estimate + tie)) / 2
-    left_out = np.lib.stride_tricks.sliding_window_view(np.concatenate([values, values[:-1]]), values.size)[:, 1:]
-    influence = np.mean(statistic(left_out)) - statistic(left_out)
-    largest = float(np.abs(influence).max())
-    if not 0 < share < 1 or largest == 0:
-        return tails
-    influence = influence / largest  # the cubes of small numbers would vanish
-    bias = ndtri(share)
-    acceleration = np.sum(influence**3) / np.sum(influence**2) ** 1.5 / 6
-    shifted = bias + ndtri(tails)
-    corrected: Floats = ndtr(bias + shifted / (1 - acceleration * shifted))
-    return corrected
+    tie = max(1e-11 * float(np.ptp(values)), 1e-14 * float(np.abs(values).max()), 1e-290)
+    digits = -math.floor(math.log10(tie))
+
+    def rounded(samples: Floats, axis: int = -1) -> Floats:
+        result: Floats = np.round(statistic(np.moveaxis(samples, axis, -1)), digits)
+        return result
+
+    return rounded
 
 
 def share_interval(outcomes: ArrayLike, *, level: float = LEVEL) -> Interval:
@@ -135,11 +138,9 @@ def share_interval(outcomes: ArrayLike, *, level: float = LEVEL) -> Interval:
     values = values[~np.isnan(values)]
     if values.size == 0:
         return Interval(np.nan, np.nan, np.nan)
-    n, share = values.size, float(np.mean(values))
-    z = float(ndtri(0.5 + level / 2))
-    centre = (share + z**2 / (2 * n)) / (1 + z**2 / n)
-    half = z / (1 + z**2 / n) * np.sqrt(share * (1 - share) / n + z**2 / (4 * n**2))
-    return Interval(share, max(0.0, float(centre - half)), min(1.0, float(centre + half)))
+    hits = round(float(np.sum(values)))
+    bounds = stats.binomtest(hits, values.size).proportion_ci(level, method="wilson")
+    return Interval(hits / values.size, float(bounds.low), float(bounds.high))
 
 
 def paired_difference(first: ArrayLike, second: ArrayLike, *, seed: int = 0, level: float = LEVEL) -> Interval:

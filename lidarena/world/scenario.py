@@ -1,4 +1,4 @@
-"""TeamScenario files of the MovingAI benchmarks for teams (Stern et al. 2019): who starts where and goes where."""
+"""Scenario files of the MovingAI benchmarks for teams (Stern et al. 2019): who starts where and goes where."""
 
 import os
 from pathlib import Path

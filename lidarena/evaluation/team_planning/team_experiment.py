@@ -21,13 +21,23 @@ from lidarena.base.worker_processes import worker_pool
 from lidarena.base.yaml_config import ConfigModel
 from lidarena.evaluation.progress_report import report_progress
 from lidarena.evaluation.runner import available_cores
-from lidarena.evaluation.team_planning.team_problems import Ground, Problem, count_conflicts, ground_of, problems, solve
+from lidarena.evaluation.team_planning.team_problems import (
+    Problem,
+    ProblemGrid,
+    count_conflicts,
+    problem_grid,
+    problems,
+    solve,
+)
 from lidarena.planning.team.plan import Method
 from lidarena.world.movingai import load_movingai
 from lidarena.world.scenario import load_scenario
 
 METHODS: tuple[Method, ...] = ("prioritized_astar", "coordination", "prioritized_search")
 ROBOTS = range(2, 7)
+SHIPPED = Path(__file__).parent / "movingai"
+"""The benchmarks that come with the package."""
+_SCENARIOS = 10
 _CHUNK = 25  # experiments a task
 
 
@@ -35,7 +45,8 @@ class MovingAI(ConfigModel):
     """Which MovingAI scenarios are solved.
 
     Attributes:
-        folder: With ``map/NAME.map`` and ``scen-random/NAME-random-I.scen``; None leaves the table out.
+        folder: With ``map/NAME.map`` and ``scen-random/NAME-random-I.scen``, as movingai.com packs them; ``shipped``
+            for the three that come with the package, up to 200 robots each; None leaves the table out.
         maps: Names.
         robots: Sizes of the teams.
         time_limit: Of one plan [s].
@@ -133,14 +144,14 @@ def _in_processes(tasks: Sequence[Task], workers: int) -> Iterator[tuple[int, li
 
 
 @lru_cache(maxsize=8)
-def _ground(env: str, cell: float) -> Ground:
-    return ground_of(env, cell, 0.0 if cell > 0.5 else 0.2)
+def _grid(env: str, cell: float) -> ProblemGrid:
+    return problem_grid(env, cell, 0.0 if cell > 0.5 else 0.2)
 
 
 def _optimum(count: int, seed: int) -> list[Outcome]:
     """Fig. 10: pairs on 60 cm cells whose paths conflict and can be coordinated, beside the joint optimum."""
     outcomes: list[Outcome] = []
-    for problem in problems(_ground("office", 0.6), 2, seed):
+    for problem in problems(_grid("office", 0.6), 2, seed):
         if solve(problem, "independent_astar").solved:
             continue
         optimum, coordinated = solve(problem, "joint_astar", 60.0), solve(problem, "coordination")
@@ -155,10 +166,10 @@ def _optimum(count: int, seed: int) -> list[Outcome]:
 def _teams(env: str, robots: int, seed: int, count: int, iterations: int) -> list[Outcome]:
     """Fig. 12, 15, 16: random teams; those without a conflict are noted and not planned further."""
     outcomes = []
-    ground = _ground(env, 0.2)
-    for problem, _ in zip(problems(ground, robots, 10_000 + seed), range(count), strict=False):
+    grid = _grid(env, 0.2)
+    for problem, _ in zip(problems(grid, robots, 10_000 + seed), range(count), strict=False):
         alone = solve(problem, "independent_astar")
-        conflicts = 0 if alone.solved else count_conflicts(alone, ground.graph.apart)
+        conflicts = 0 if alone.solved else count_conflicts(alone, grid.graph.apart)
         costs = _costs(problem, iterations) if conflicts else {}
         outcomes.append(Outcome(env, robots, conflicts, alone.lower_bound, costs))
     return outcomes
@@ -172,19 +183,32 @@ def _costs(problem: Problem, iterations: int) -> dict[str, float]:
 def _movingai_tasks(config: MovingAI) -> Iterable[Task]:
     if config.folder is None:
         return []
-    folder = Path(config.folder)
+    folder = SHIPPED if config.folder == "shipped" else Path(config.folder)
     tasks = []
     for name in config.maps:
-        if not (folder / "map" / f"{name}.map").is_file():
-            raise ConfigError(f"there is no {folder / 'map' / name}.map; movingai.folder holds map and scen-random")
+        numbers = range(1, _SCENARIOS + 1)
+        for file in (_map_file(folder, name), *(_scenario_file(folder, name, number) for number in numbers)):
+            if not file.is_file():
+                raise ConfigError(
+                    f"there is no {file}; movingai.folder must hold map/ and scen-random/ from movingai.com, or be "
+                    "'shipped' for those of the package, or null to leave them out"
+                )
         for robots in config.robots:
-            tasks += [partial(_movingai, folder, name, robots, i, config.time_limit) for i in range(1, 11)]
+            tasks += [partial(_movingai, folder, name, robots, number, config.time_limit) for number in numbers]
     return tasks
 
 
+def _map_file(folder: Path, name: str) -> Path:
+    return folder / "map" / f"{name}.map"
+
+
+def _scenario_file(folder: Path, name: str, number: int) -> Path:
+    return folder / "scen-random" / f"{name}-random-{number}.scen"
+
+
 def _movingai(folder: Path, name: str, robots: int, number: int, time_limit: float) -> list[Outcome]:
-    free = load_movingai(folder / "map" / f"{name}.map")
-    scenario = load_scenario(folder / "scen-random" / f"{name}-random-{number}.scen", free, robots, f"{name}.map")
+    free = load_movingai(_map_file(folder, name))
+    scenario = load_scenario(_scenario_file(folder, name, number), free, robots, f"{name}.map")
     problem = Problem(~free, scenario.starts, scenario.goals, 0.0, 4)
     solve(problem, "prioritized_search", iterations=1)  # loads the kernels
     begin = time.perf_counter()

@@ -29,7 +29,7 @@ class Problem(NamedTuple):
     connectivity: int = 8
 
 
-class Ground(NamedTuple):
+class ProblemGrid(NamedTuple):
     """A floor plan's grid and the places of it that problems are drawn from."""
 
     blocked: NDArray[np.bool_]
@@ -37,7 +37,7 @@ class Ground(NamedTuple):
     places: NDArray[np.int64]
 
 
-def ground_of(name: str, cell: float, radius: float = RADIUS) -> Ground:
+def problem_grid(name: str, cell: float, radius: float = RADIUS) -> ProblemGrid:
     """Lay out a floor plan that has predefined places.
 
     Args:
@@ -55,26 +55,26 @@ def ground_of(name: str, cell: float, radius: float = RADIUS) -> Ground:
     graph = grid_graph_of(grid.blocked, 8, grid.in_cells(radius))
     cells = grid.cells(known.starts)
     places = graph.index[cells[:, 0], cells[:, 1]].astype(np.int64)
-    return Ground(grid.blocked, graph, places[places >= 0])
+    return ProblemGrid(grid.blocked, graph, places[places >= 0])
 
 
-def draw_problem(ground: Ground, robots: int, rng: np.random.Generator) -> Problem:
+def draw_problem(grid: ProblemGrid, robots: int, rng: np.random.Generator) -> Problem:
     """Draw starts apart from each other, goals too, every goal within reach."""
-    graph = ground.graph
+    graph = grid.graph
     while True:
-        ends = np.stack([rng.choice(ground.places, robots, replace=False) for _ in range(2)])
+        ends = np.stack([rng.choice(grid.places, robots, replace=False) for _ in range(2)])
         cells = graph.cells[ends].astype(float)
         gaps = np.linalg.norm(cells[:, :, None] - cells[:, None], axis=-1) + 1e9 * np.eye(robots)
         reached = all(graph.ahead(int(goal))[start] < UNREACHABLE for start, goal in ends.T)
         if reached and gaps.min() >= max(graph.apart, 1.0) and (ends[0] != ends[1]).all():
-            return Problem(ground.blocked, graph.cells[ends[0]], graph.cells[ends[1]], graph.radius)
+            return Problem(grid.blocked, graph.cells[ends[0]], graph.cells[ends[1]], graph.radius)
 
 
-def problems(ground: Ground, robots: int, seed: int) -> Iterator[Problem]:
+def problems(grid: ProblemGrid, robots: int, seed: int) -> Iterator[Problem]:
     """Random problems without end; the first ones of a seed are always the same."""
     rng = np.random.default_rng([seed, robots])
     while True:
-        yield draw_problem(ground, robots, rng)
+        yield draw_problem(grid, robots, rng)
 
 
 def solve(problem: Problem, method: Method, time_limit: float = np.inf, iterations: int | None = None) -> TeamPlan:

@@ -27,7 +27,7 @@ _ENVS = {"office": "-", "unstructured": "--"}
 
 
 @dataclass(frozen=True)
-class Row:
+class FigureRow:
     """One line of a table: a figure's value for one method and team.
 
     Attributes:
@@ -49,7 +49,7 @@ class Row:
     interval: Interval
 
 
-def compare_planners(config: TeamExperimentConfig, console: Console | None = None) -> tuple[list[Row], Path]:
+def compare_planners(config: TeamExperimentConfig, console: Console | None = None) -> tuple[list[FigureRow], Path]:
     """Run the team experiments and write tables and plots.
 
     Returns:
@@ -73,7 +73,7 @@ def compare_planners(config: TeamExperimentConfig, console: Console | None = Non
     return rows, folder
 
 
-def optimum_rows(outcomes: Sequence[Outcome]) -> list[Row]:
+def optimum_rows(outcomes: Sequence[Outcome]) -> list[FigureRow]:
     """Fig. 10: cost over the joint optimum."""
     rows = []
     for method in METHODS:
@@ -82,9 +82,9 @@ def optimum_rows(outcomes: Sequence[Outcome]) -> list[Row]:
     return rows
 
 
-def team_rows(outcomes: Sequence[Outcome]) -> list[Row]:
+def team_rows(outcomes: Sequence[Outcome]) -> list[FigureRow]:
     """Fig. 12, 15 and 16, of the teams with a conflict."""
-    rows: list[Row] = []
+    rows: list[FigureRow] = []
     for _, group in groupby(outcomes, key=lambda outcome: (outcome.env, outcome.robots)):
         conflicting = [outcome for outcome in group if outcome.conflicts]
         if not conflicting:
@@ -102,9 +102,9 @@ def team_rows(outcomes: Sequence[Outcome]) -> list[Row]:
     return rows
 
 
-def movingai_rows(outcomes: Sequence[Outcome]) -> list[Row]:
+def movingai_rows(outcomes: Sequence[Outcome]) -> list[FigureRow]:
     """Solved, cost over the bound, and time, of each map and team size."""
-    rows: list[Row] = []
+    rows: list[FigureRow] = []
     for _, group in groupby(outcomes, key=lambda outcome: (outcome.env, outcome.robots)):
         all_of = list(group)
         costs = np.array([outcome.costs["prioritized_search"] for outcome in all_of])
@@ -124,11 +124,11 @@ def _row(
     quantity: str,
     values: NDArray[np.float64],
     interval: Callable[[NDArray[np.float64]], Interval] = bootstrap,
-) -> Row:
-    return Row(figure, outcome.env, outcome.robots, method, quantity, values, interval(values))
+) -> FigureRow:
+    return FigureRow(figure, outcome.env, outcome.robots, method, quantity, values, interval(values))
 
 
-def markdown(rows: Sequence[Row]) -> str:
+def markdown(rows: Sequence[FigureRow]) -> str:
     """Return the tables as Markdown: one a figure and quantity, a line a team, a column a method."""
     parts = []
     for (figure, quantity), group in groupby(_sorted(rows), key=lambda row: (row.figure, row.quantity)):
@@ -147,7 +147,7 @@ def markdown(rows: Sequence[Row]) -> str:
     )
 
 
-def csv(rows: Sequence[Row]) -> str:
+def csv(rows: Sequence[FigureRow]) -> str:
     """Return one line for each row."""
     lines = ["figure,env,robots,method,quantity,problems,mean,ci_low,ci_high"]
     for row in rows:
@@ -156,7 +156,7 @@ def csv(rows: Sequence[Row]) -> str:
     return "\n".join(lines) + "\n"
 
 
-def print_rows(rows: Sequence[Row], console: Console) -> None:
+def print_rows(rows: Sequence[FigureRow], console: Console) -> None:
     """Print the tables to a terminal."""
     for (figure, quantity), group in groupby(_sorted(rows), key=lambda row: (row.figure, row.quantity)):
         own = list(group)
@@ -169,7 +169,7 @@ def print_rows(rows: Sequence[Row], console: Console) -> None:
         console.print(table)
 
 
-def draw(rows: Sequence[Row], path: Path) -> None:
+def draw(rows: Sequence[FigureRow], path: Path) -> None:
     """Draw Fig. 10, 12, 15 and 16 in one picture."""
     from matplotlib.figure import Figure
 
@@ -188,7 +188,7 @@ def draw(rows: Sequence[Row], path: Path) -> None:
     write_figure(path, figure)
 
 
-def _draw_optimum(axes: "Axes", rows: Sequence[Row]) -> None:
+def _draw_optimum(axes: "Axes", rows: Sequence[FigureRow]) -> None:
     for place, row in enumerate(rows):
         mean, low, high = row.interval
         axes.bar(place, mean, color=_COLOURS[row.method])
@@ -200,7 +200,7 @@ def _draw_optimum(axes: "Axes", rows: Sequence[Row]) -> None:
     axes.set_title("Move cost over the joint optimum, two robots (Fig. 10)", fontsize=10)
 
 
-def _draw_teams(axes: "Axes", rows: Sequence[Row], scale: float) -> None:
+def _draw_teams(axes: "Axes", rows: Sequence[FigureRow], scale: float) -> None:
     for (env, method), group in groupby(
         sorted(rows, key=lambda row: (row.env, METHODS.index(row.method) if row.method else 0)),
         key=lambda row: (row.env, row.method),
@@ -218,20 +218,20 @@ def _draw_teams(axes: "Axes", rows: Sequence[Row], scale: float) -> None:
         axes.legend(fontsize=8, frameon=False)
 
 
-def _sorted(rows: Sequence[Row]) -> list[Row]:
+def _sorted(rows: Sequence[FigureRow]) -> list[FigureRow]:
     """By figure and quantity, the rest as it came."""
     order = {key: place for place, key in enumerate(dict.fromkeys((row.figure, row.quantity) for row in rows))}
     return sorted(rows, key=lambda row: order[row.figure, row.quantity])
 
 
-def _text(row: Row) -> str:
+def _text(row: FigureRow) -> str:
     mean, low, high = row.interval
     if row.quantity in ("solved", "increase of the cost"):
         return f"{100 * mean:.1f}% [{100 * low:.1f}, {100 * high:.1f}]"
     return f"{mean:.3f} [{low:.3f}, {high:.3f}]"
 
 
-def _document(config: TeamExperimentConfig, rows: Sequence[Row]) -> dict[str, Any]:
+def _document(config: TeamExperimentConfig, rows: Sequence[FigureRow]) -> dict[str, Any]:
     """The same form as a comparison's ``results.json``: a row an environment and policy."""
     return {
         "config": config.model_dump(mode="json"),

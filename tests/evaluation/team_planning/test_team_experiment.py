@@ -1,6 +1,7 @@
 """The experiments with planners: what is drawn, counted and written; and teams in an ordinary comparison."""
 
 import json
+import shutil
 
 import numpy as np
 import pytest
@@ -13,25 +14,28 @@ from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import run_episode
 from lidarena.evaluation.participants import make_participants
 from lidarena.evaluation.team_planning.team_experiment import (
+    SHIPPED,
     Outcome,
     TeamExperimentConfig,
     is_team_experiment,
     run_experiments,
 )
-from lidarena.evaluation.team_planning.team_problems import Problem, count_conflicts, draw_problem, ground_of, solve
+from lidarena.evaluation.team_planning.team_problems import Problem, count_conflicts, draw_problem, problem_grid, solve
 from lidarena.evaluation.team_planning.team_tables import markdown, movingai_rows, optimum_rows, team_rows
+from lidarena.world.movingai import load_movingai
+from lidarena.world.scenario import load_scenario
 
 CONFIG = "configs/compare/team_planning.yaml"
 
 
 def test_problems_start_and_end_apart():
-    ground = ground_of("office", 0.2)
-    problem = draw_problem(ground, 6, np.random.default_rng(0))
+    grid = problem_grid("office", 0.2)
+    problem = draw_problem(grid, 6, np.random.default_rng(0))
     for cells in (problem.starts, problem.goals):
         gaps = np.hypot(*(cells[:, None] - cells[None]).transpose(2, 0, 1)) + 99 * np.eye(6)
         assert gaps.min() >= 2.0
     with pytest.raises(ConfigError, match="has no places to draw"):
-        ground_of("passing", 0.2)
+        problem_grid("passing", 0.2)
 
 
 def test_conflicts_are_counted_by_pairs():
@@ -63,18 +67,38 @@ def test_the_same_configuration_gives_the_same_outcomes():
 
 
 def test_evaluate_writes_tables_and_figures(tmp_path, capsys):
-    overrides = ["optimum_runs=2", "runs=8", "iterations=2", "workers=1", "movingai.folder=null"]
+    overrides = ["optimum_runs=2", "runs=8", "iterations=2", "workers=1"]
+    overrides += ["movingai.maps=[room-32-32-4]", "movingai.robots=[6]"]
     assert evaluate.main(["--config", CONFIG, "--set", *overrides, "--out", str(tmp_path / "out")]) == 0
     document = json.loads((tmp_path / "out" / "results.json").read_text())
     assert {"config", "versions", "rows"} <= set(document)
     assert (tmp_path / "out" / "figures.png").stat().st_size > 10_000
     assert "Fig. 16" in (tmp_path / "out" / "table.md").read_text()
     assert "Fig. 10" in capsys.readouterr().out
+    solved = document["rows"][-3]
+    assert solved["env"] == "room-32-32-4, 6 robots" and solved["episodes"] == 10
+    assert solved["metrics"]["MovingAI: solved"]["mean"] == 1.0
 
 
-def test_a_missing_movingai_folder_is_refused(tmp_path, capsys):
-    assert evaluate.main(["--config", CONFIG, "--set", "movingai.folder=/nowhere", "--out", str(tmp_path / "o")]) == 2
-    assert "there is no /nowhere" in capsys.readouterr().err
+def test_every_benchmark_of_the_file_is_shipped_with_its_licence():
+    config = load_config(CONFIG, TeamExperimentConfig).movingai
+    assert config.folder == "shipped" and len(config.maps) == 3 and max(config.robots) <= 200
+    for name in config.maps:
+        free = load_movingai(SHIPPED / "map" / f"{name}.map")
+        for number in range(1, 11):
+            path = SHIPPED / "scen-random" / f"{name}-random-{number}.scen"
+            assert len(load_scenario(path, free, 200, f"{name}.map").starts) == 200
+    assert "Open Data Commons Attribution" in (SHIPPED / "LICENSE.md").read_text(encoding="utf-8")
+
+
+@pytest.mark.parametrize("missing", ["map/room-32-32-4.map", "scen-random/room-32-32-4-random-7.scen"])
+def test_a_missing_movingai_file_is_refused_at_once(missing, tmp_path, capsys):
+    shutil.copytree(SHIPPED, tmp_path / "mapf")
+    (tmp_path / "mapf" / missing).unlink()
+    folder = f"movingai.folder={tmp_path / 'mapf'}"
+    assert evaluate.main(["--config", CONFIG, "--set", folder, "--out", str(tmp_path / "o")]) == 2
+    told = capsys.readouterr().err
+    assert f"there is no {tmp_path / 'mapf' / missing}; movingai.folder must" in told and told.count("\n") == 1
 
 
 def test_files_of_comparisons_are_told_from_those_of_experiments(tmp_path):

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from lidarena.evaluation.team_planning import team_problems
-from lidarena.evaluation.team_planning.team_problems import Problem, count_conflicts, ground_of, problems, solve
+from lidarena.evaluation.team_planning.team_problems import Problem, count_conflicts, problem_grid, problems, solve
 from lidarena.planning.team.grid_graph import UNREACHABLE
 from lidarena.planning.team.team_plan import TeamPlan
 from tests.envs.corridor.corridor_worlds import gaps
@@ -16,23 +16,23 @@ from tests.planning.team.problems import meet
 
 @pytest.mark.parametrize(("name", "robots"), [("office", 6), ("unstructured", 4)])
 def test_problems_have_room_and_a_way_for_everybody(name: str, robots: int) -> None:
-    ground = ground_of(name, 0.2)
-    assert len(ground.places) >= 20
-    for problem in itertools.islice(problems(ground, robots, 3), 5):
+    grid = problem_grid(name, 0.2)
+    assert len(grid.places) >= 20
+    for problem in itertools.islice(problems(grid, robots, 3), 5):
         assert problem.radius == pytest.approx(1.0) and problem.starts.shape == problem.goals.shape == (robots, 2)
         assert (problem.starts != problem.goals).any(axis=1).all()
         for cells in (problem.starts, problem.goals):
             assert gaps(cells.astype(float)).min() >= 2.0
-            assert {ground.graph.place(cell) for cell in cells} <= set(ground.places.tolist())
+            assert {grid.graph.place(cell) for cell in cells} <= set(grid.places.tolist())
         for start, goal in zip(problem.starts, problem.goals, strict=True):
-            assert ground.graph.ahead(ground.graph.place(goal))[ground.graph.place(start)] < UNREACHABLE
+            assert grid.graph.ahead(grid.graph.place(goal))[grid.graph.place(start)] < UNREACHABLE
 
 
 def test_the_problems_of_a_seed_are_always_the_same_and_those_of_another_are_others() -> None:
-    ground = ground_of("office", 0.2)
-    first = [np.stack(problem[1:3]).tolist() for problem in itertools.islice(problems(ground, 3, 7), 4)]
-    again = [np.stack(problem[1:3]).tolist() for problem in itertools.islice(problems(ground, 3, 7), 4)]
-    other = [np.stack(problem[1:3]).tolist() for problem in itertools.islice(problems(ground, 3, 8), 4)]
+    grid = problem_grid("office", 0.2)
+    first = [np.stack(problem[1:3]).tolist() for problem in itertools.islice(problems(grid, 3, 7), 4)]
+    again = [np.stack(problem[1:3]).tolist() for problem in itertools.islice(problems(grid, 3, 7), 4)]
+    other = [np.stack(problem[1:3]).tolist() for problem in itertools.islice(problems(grid, 3, 8), 4)]
     assert first == again and not any(problem in first for problem in other)
     assert all(problem != following for problem, following in itertools.pairwise(first))
 

@@ -48,7 +48,7 @@ MOVINGAI = [
 ]  # fmt: skip
 
 
-def found(rows: list[team_tables.Row]) -> dict[tuple[str, str, int, str], list[float]]:
+def found(rows: list[team_tables.FigureRow]) -> dict[tuple[str, str, int, str], list[float]]:
     return {(row.figure, row.env, row.robots, row.method): row.values.tolist() for row in rows}
 
 
@@ -128,7 +128,7 @@ def test_the_figure_shows_the_means_of_the_rows_and_their_intervals(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
     kept: list[Any] = []
-    monkeypatch.setattr(Figure, "savefig", lambda self, path: kept.append(self))
+    monkeypatch.setattr(Figure, "savefig", lambda self, path, **_: kept.append(self))
     rows = [*optimum_rows(OPTIMUM), *team_rows(TEAMS)]
     draw(rows, tmp_path / "figures.png")
     bars, involved, increase, solved = kept[0].axes
