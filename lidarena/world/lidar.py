@@ -70,7 +70,7 @@ class Lidar:
 
     def __init__(self, plans: Sequence[Floorplan], spec: LidarSpec | None = None) -> None:
         self.spec = spec or LidarSpec()
-        self.geometry = _lay_out(plans, self.spec.max_range)
+        self.geometry = lay_out(plans, self.spec.max_range)
         angles = np.arange(self.spec.beams) * (2 * np.pi / self.spec.beams)
         self.directions = np.stack([np.cos(angles), np.sin(angles)])
 
@@ -247,9 +247,10 @@ def add_range_noise(
                 scans[w, r, k] = min(max(value, 0.0), max_range)
 
 
-def _lay_out(plans: Sequence[Floorplan], max_range: float) -> MapGeometry:
-    edges = np.vstack([plan.edges for plan in plans])
-    circles = np.vstack([plan.circles for plan in plans])
+def lay_out(plans: Sequence[Floorplan], max_range: float) -> MapGeometry:
+    """Lay floor plans out for the kernel, for beams of up to ``max_range`` [m]."""
+    edges = np.vstack([np.empty((0, 4)), *(plan.edges for plan in plans)])
+    circles = np.vstack([np.empty((0, 3)), *(plan.circles for plan in plans)])
     starts, items, first_tile, origins, shapes = [np.zeros(1, np.int64)], [], [], [], []
     tiles = edge_offset = circle_offset = 0
     for plan in plans:
@@ -273,10 +274,10 @@ def _lay_out(plans: Sequence[Floorplan], max_range: float) -> MapGeometry:
         edges,
         circles,
         np.array(first_tile, np.int64),
-        np.array(origins, np.float64),
-        np.array(shapes, np.int64),
+        np.array(origins, np.float64).reshape(-1, 2),
+        np.array(shapes, np.int64).reshape(-1, 2),
         np.concatenate(starts).astype(np.int64),
-        np.concatenate(items),
+        np.concatenate([np.empty(0, np.int32), *items]),
     )
 
 

@@ -11,6 +11,10 @@ from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.map_server import load_map, read_description
 from lidarena.world.maze import generate_maze
 from lidarena.world.movingai import movingai_floorplan
+from lidarena.world.plan_generators import PlanGenerator, draw_plan, plan_generator
+
+MapSpec = str | os.PathLike[str] | Floorplan | PlanGenerator
+"""What ``map=`` takes, see ``load_floorplan``."""
 
 _MAZE_OPTIONS = {
     "width": "width_m",
@@ -20,6 +24,7 @@ _MAZE_OPTIONS = {
     "dead_ends": "dead_ends",
     "thickness": "thickness",
 }
+_ALLOWED = ["maze:SEED", "a path to a .yaml or .map file", "module:callable of a generator"]
 _Stamp = tuple[tuple[int, int], ...]
 
 
@@ -28,7 +33,7 @@ def names() -> list[str]:
     return builtin.names()
 
 
-def load_floorplan(spec: str | os.PathLike[str] | Floorplan, start: Pose | None = None) -> Floorplan:
+def load_floorplan(spec: MapSpec, start: Pose | None = None) -> Floorplan:
     """Load a floor plan; one that was loaded before is not read again unless its files have changed.
 
     Args:
@@ -36,15 +41,34 @@ def load_floorplan(spec: str | os.PathLike[str] | Floorplan, start: Pose | None 
             ``.map``, if wanted with the side of a cell in metres as in ``"den520d.map?cell=0.5"``; or
             ``"maze:SEED"``, if wanted with options as in
             ``"maze:7?width=10&height=8&corridor=1.2&loops=0.2&dead_ends=0.5&thickness=0.1"`` (see ``generate_maze``).
-            A ``Floorplan`` is passed through.
+            A ``Floorplan`` is passed through. Of a generator of one's own (see ``PlanGenerator``) or its
+            ``"module:callable"`` the plan with the number 0 is taken.
         start: Start pose x, y, theta instead of the plan's own [m, m, rad].
 
     Raises:
         MapError: The plan does not exist, its file is damaged, an option is out of range, nothing in it is free, or
             the start stands in a wall.
     """
-    plan = spec if isinstance(spec, Floorplan) else _load(_as_text(spec))
-    return plan if start is None else plan.with_start(start)
+    return _find(spec) if start is None else _find(spec).with_start(start)
+
+
+def generator_of(spec: object) -> PlanGenerator | None:
+    """Return the generator that a user's ``map=`` names; None if it is a single plan.
+
+    Raises:
+        ConfigError: A ``"module:callable"`` that there is not.
+        MapError: One that cannot be called.
+    """
+    if isinstance(spec, str) and (spec in builtin.names() or spec.startswith("maze:")):
+        return None
+    return plan_generator(spec)
+
+
+def _find(spec: MapSpec) -> Floorplan:
+    if isinstance(spec, Floorplan):
+        return spec
+    generator = generator_of(spec)
+    return _load(_as_text(spec)) if generator is None else draw_plan(generator, 0)
 
 
 def _as_text(spec: object) -> str:
@@ -67,9 +91,7 @@ def _load(spec: str) -> Floorplan:
         return _map_server(spec, _stamp(spec, os.fspath(read_description(spec).image)))
     if spec.endswith((".pgm", ".png")):
         raise MapError(f"map {spec!r} is a picture; give the .yaml file beside it, which says how large its cells are")
-    raise MapError(
-        f"map {spec!r} is not known{suggest(spec, [*names(), 'maze:SEED', 'a path to a .yaml or .map file'])}"
-    )
+    raise MapError(f"map {spec!r} is not known{suggest(spec, _ALLOWED + names())}")
 
 
 @lru_cache(maxsize=32)

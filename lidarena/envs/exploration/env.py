@@ -2,6 +2,7 @@
 
 from typing import Any, Unpack
 
+from gymnasium.error import ResetNeeded
 from gymnasium.vector import AutoresetMode
 
 from lidarena.base.keyword_checks import takes_keywords_of
@@ -119,8 +120,14 @@ class ExplorationEnv(SingleWorld):
 
     @property
     def floorplan(self) -> Floorplan:
-        """The world's true floor plan, for pictures; no policy may look at it."""
+        """The world's true floor plan, for pictures; no policy may look at it.
+
+        Raises:
+            ResetNeeded: Every episode draws another, and there was none.
+        """
         core: ExplorationCore = self.episodes.core
+        if not len(core.plans):
+            raise ResetNeeded("there is no floor plan before reset()")
         return core.plans[int(core.plan[0])]
 
 

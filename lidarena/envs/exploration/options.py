@@ -10,6 +10,7 @@ from lidarena.base.keyword_checks import check_choice, check_names, check_range,
 from lidarena.envs.exploration.coverage import START_MARGIN
 from lidarena.slam.registry import check_slam, estimator_name
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
+from lidarena.world.load import MapSpec
 
 ETA = 1.2e-4
 """η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). DA-SLAM
@@ -20,7 +21,6 @@ COMBINED_WEIGHTS = {"completeness": 10.0, "path": 1.0, "uncertainty": 1.0, "coll
 CERTAIN_ENOUGH = 1.3e-4
 """The usual D-optimality of an exploring robot in Env-1 to Env-4."""
 
-MapSpec = str | Floorplan
 SlamSpec = str | Callable[..., Any] | Mapping[str, Any]
 _CHOICES = {
     "reward": ("completeness", "d_optimality", "combined"),
@@ -67,8 +67,9 @@ class ExplorationOptions:
     """Keywords of ``lidarena/Exploration-v0`` and ``lidarena/Env1-v0`` … ``Env4-v0``.
 
     Attributes:
-        map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``, or a list of them
-            from which every reset draws one.
+        map: Floor plan: a built-in name, a map_server YAML, a MovingAI ``.map``, ``"maze:SEED"``; a generator of one's
+            own or its ``"module:callable"``, which draws a new plan for every episode (see
+            ``lidarena.world.plan_generators.PlanGenerator``); or a list of these, from which every reset draws one.
         reward: ``"completeness"`` (DA-SLAM's eq. 2), ``"d_optimality"`` (eq. 3), or ``"combined"``: the whole map on
             a short path with a certain pose.
         observation: ``"da_slam"`` (DA-SLAM's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
@@ -148,8 +149,9 @@ class ExplorationOptions:
             raise MapError(f"start = {self.start!r} must be a pose (x, y, theta), 'random' or None")
         if self.start is not None and not isinstance(self.start, str):
             _check_pose(self.start)
-        if not isinstance(self.map, str | Floorplan) and (not isinstance(self.map, Sequence) or not len(self.map)):
-            raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file, or a list of them")
+        single = isinstance(self.map, str | Floorplan) or callable(self.map)
+        if not single and (not isinstance(self.map, Sequence) or not len(self.map)):
+            raise ConfigError(f"map = {self.map!r} must be a floor plan's name, file or generator, or a list of them")
 
     def _check_slam(self) -> None:
         check_slam(self.slam)
@@ -190,7 +192,7 @@ class ExplorationOptions:
     @property
     def maps(self) -> list[MapSpec]:
         """The floor plans to draw from."""
-        return [self.map] if isinstance(self.map, str | Floorplan) else list(self.map)
+        return list(self.map) if isinstance(self.map, Sequence) and not isinstance(self.map, str) else [self.map]
 
 
 def _check_pose(start: Any) -> None:

@@ -107,7 +107,6 @@ class CombinedReward:
 
     def __init__(self, core: ExplorationCore, weights: Mapping[str, float], certain_enough: float) -> None:
         self._core, self._weights, self._enough = core, dict(weights), certain_enough
-        self._areas = np.array([_area(plan.bounds) for plan in core.plans])
         worlds = core.worlds
         self._path, self._log_mean = np.zeros(worlds), np.zeros(worlds)
         self._steps = np.zeros(worlds, np.int64)
@@ -123,7 +122,7 @@ class CombinedReward:
     def grade(self, gain: Floats) -> Floats:
         """Grade a step."""
         core, weights = self._core, self._weights
-        area, path = self._areas[core.plan], core.sensors.path_length
+        area, path = core.floors.areas[core.plan], core.sensors.path_length
         size = (np.minimum(area, LARGEST_AREA) / ORDINARY_AREA) ** SIZE_POWER
         self._steps += 1
         log_d = np.array([math.log(max(d, self._enough)) for d in core.d_optimality.tolist()])  # as with tanh above
@@ -160,8 +159,3 @@ def _crash_or(core: ExplorationCore, name: str, gain: Floats) -> dict[str, Float
 def _clear(terms: dict[str, Floats], world: int) -> None:
     for term in terms.values():
         term[world] = 0.0
-
-
-def _area(bounds: tuple[float, float, float, float]) -> float:
-    """Of the rectangle x_min, y_min, x_max, y_max [m²]."""
-    return (bounds[2] - bounds[0]) * (bounds[3] - bounds[1])

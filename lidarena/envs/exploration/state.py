@@ -6,13 +6,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
-from lidarena.envs.exploration.coverage import measure_coverage
+from lidarena.envs.exploration.floors import make_floors
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.envs.worker_threads import on_threads
 from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Sensing
 from lidarena.slam.registry import make_estimator
-from lidarena.world.lidar import Lidar, LidarSpec
-from lidarena.world.load import load_floorplan
+from lidarena.world.lidar import LidarSpec
 from lidarena.world.odometry import OdometryNoise
 from lidarena.world.physics import Physics, RobotSpec, may_touch
 from lidarena.world.sensors import empty_sensors
@@ -38,18 +37,16 @@ class ExplorationCore:
         sensors: Scans, odometry, paths, collisions.
         estimator: The SLAM; ``maps``, ``estimate`` (worlds, 3), ``covariance`` (worlds, 3, 3) and ``d_optimality``
             (worlds,) are its.
-        wanted_cells: (plans,) size of K of each floor plan.
+        floors: The floor plans.
     """
 
     def __init__(self, worlds: int, options: ExplorationOptions) -> None:
         self.options = options
         start = None if isinstance(options.start, str) else options.start
-        self.plans = [load_floorplan(spec, start=start) for spec in options.maps]
         self.robot, self.beam = RobotSpec(), LidarSpec(noise=options.lidar_noise)
-        self.lidar = Lidar(self.plans, self.beam)
+        self.floors = make_floors(worlds, options.maps, start, self.beam, RESOLUTION, self.robot.radius)
+        self.plans, self.lidar = self.floors.plans, self.floors.lidar
         self.physics = Physics(worlds, spec=self.robot)
-        self._coverage = [measure_coverage(plan, RESOLUTION, self.robot.radius) for plan in self.plans]
-        self.wanted_cells = np.array([coverage.wanted.sum() for coverage in self._coverage])
         self._noise = OdometryNoise().scaled(options.odometry_noise)
         self._allocate(worlds)
         self.estimator = self._make_estimator()
@@ -64,18 +61,14 @@ class ExplorationCore:
         self.sensors = empty_sensors(worlds, self.beam.beams)
 
     def _make_estimator(self) -> BatchEstimator:
-        rows, columns = np.max([coverage.wanted.shape for coverage in self._coverage], axis=0)
-        wanted = np.zeros((len(self.plans), rows, columns), np.uint8)
-        for k, coverage in enumerate(self._coverage):
-            r, c = coverage.wanted.shape
-            wanted[k, :r, :c] = coverage.wanted
+        wanted = self.floors.wanted
         believed = OdometryNoise().scaled(max(self.options.odometry_noise, _LEAST_BELIEVED_NOISE))
         settings = EstimatorSettings(self.worlds, wanted, self.lidar.directions, self.beam, RESOLUTION, believed)
         return make_estimator(self.options.estimator, settings)
 
     def reset_world(self, world: int, rng: np.random.Generator) -> None:
         """Begin a new episode in one world; everything random is drawn from ``rng``."""
-        plan = int(rng.integers(len(self.plans))) if len(self.plans) > 1 else 0
+        plan = self.floors.draw(world, rng)
         pose = self._start_pose(plan, rng)
         self.streams[world] = seed_stream(rng)
         self.plan[world] = plan
@@ -83,13 +76,13 @@ class ExplorationCore:
         sensors = self.sensors
         sensors.dead_reckoning[world, 0] = pose
         sensors.path_length[world] = sensors.true_path_length[world] = 0.0
-        self.estimator.start(world, plan, self._coverage[plan].origin, self.physics.poses[world, 0], rng)
+        self.estimator.start(world, plan, self.floors.coverage(plan).origin, self.physics.poses[world, 0], rng)
         self._perceive(self.physics.poses, world, world + 1)
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
         if self.options.start != "random":
             return self.plans[plan].start
-        starts = self._coverage[plan].starts
+        starts = self.floors.coverage(plan).starts
         x, y = starts[int(rng.integers(len(starts)))]
         return (float(x), float(y), float(rng.uniform(-np.pi, np.pi)))
 
@@ -119,7 +112,7 @@ class ExplorationCore:
     @property
     def completeness(self) -> NDArray[np.float64]:
         """Map completeness (worlds,), known ∩ K over K, from 0 to 1."""
-        share: NDArray[np.float64] = self.maps.covered / self.wanted_cells[self.plan]
+        share: NDArray[np.float64] = self.maps.covered / self.floors.wanted_cells[self.plan]
         return share
 
     def arrays(self) -> dict[str, NDArray[Any]]:
@@ -132,12 +125,13 @@ class ExplorationCore:
 
     def _own_arrays(self) -> dict[str, NDArray[Any]]:
         own: dict[str, NDArray[Any]] = {"poses": self.physics.poses, "plan": self.plan, "streams": self.streams}
-        return own | self.sensors._asdict()
+        return own | self.sensors._asdict() | self.floors.arrays()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of another core with the same options."""
         for name, array in self._own_arrays().items():
             array[...] = saved[name]
+        self.floors.restore()
         self.estimator.load_arrays(saved)
         for world in range(self.worlds):
             pose = self.physics.poses[world, 0].tolist()
