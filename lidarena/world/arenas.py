@@ -2,6 +2,7 @@
 
 import math
 import os
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -11,6 +12,7 @@ from lidarena.base.errors import MapError, suggest
 from lidarena.world import barn
 from lidarena.world.floorplan import Bounds, Floorplan
 from lidarena.world.load import load_floorplan, read_options, read_seed
+from lidarena.world.plan_generators import generator_name, plan_generator
 from lidarena.world.random_arenas import DENSITY, random_arena_shapes, u_trap_shapes
 
 Point = tuple[float, float]
@@ -22,6 +24,7 @@ YANG_RADIUS = 0.8
 YANG_BOUNDS = (-5.0, -5.0, 95.0, 95.0)
 """The 100 m room, moved by 5 m: the printed start (0, 0) would stand in its corner."""
 
+_FAMILIES = ("yang", "gnron", "u_trap", "random", "barn")
 _SPECS = ("yang", "yang:arc", "yang:u", "gnron", "u_trap:SEED", "random:SEED", "barn:INDEX")
 
 
@@ -77,6 +80,36 @@ class Arena:
         )
 
 
+ArenaGenerator = Callable[[np.random.Generator], Arena | Floorplan]
+"""Draws an arena or a floor plan, with nothing random but from the generator that it is given."""
+
+
+def arena_generator(spec: object) -> ArenaGenerator | None:
+    """Return the generator that a user's ``arena=`` names, a callable or ``"module:callable"``; None for all else.
+
+    Raises:
+        ConfigError: There is no such module, or no such name in it.
+        MapError: What is named cannot be called.
+    """
+    known = isinstance(spec, Arena) or (isinstance(spec, str) and spec.partition(":")[0] in (*_FAMILIES, "maze"))
+    return None if known else plan_generator(spec)
+
+
+def draw_arena(generator: ArenaGenerator, number: int) -> Arena | Floorplan:
+    """Draw the arena of a number, always the same one.
+
+    Raises:
+        MapError: What is drawn is neither an arena nor a floor plan.
+    """
+    drawn = generator(np.random.default_rng(number))
+    if not isinstance(drawn, Arena | Floorplan):
+        raise MapError(
+            f"arena generator {generator_name(generator)!r} returned an object of type "
+            f"{type(drawn).__name__}; an Arena or a Floorplan is needed"
+        )
+    return drawn
+
+
 def load_arena(
     spec: str | Arena | Floorplan,
     *,
@@ -129,7 +162,7 @@ def _find(
         return _random(text, rest, density)
     if family == "barn" and colon:
         return _barn(text, rest, path)
-    if family in ("yang", "gnron", "u_trap", "random", "barn"):
+    if family in _FAMILIES:
         raise MapError(f"arena {text!r} is not known{suggest(text, _SPECS)}")
     return _from_floorplan(spec, goal)
 

@@ -47,7 +47,7 @@ def plan_generator(spec: object) -> PlanGenerator | None:
     return generator
 
 
-def generator_name(generator: PlanGenerator) -> str:
+def generator_name(generator: Callable[..., Any]) -> str:
     """Return what messages call a generator."""
     return str(getattr(generator, "__name__", type(generator).__name__))
 
@@ -61,8 +61,8 @@ def draw_plan(generator: PlanGenerator, number: int) -> Floorplan:
     plan = generator(np.random.default_rng(number))
     if not isinstance(plan, Floorplan):
         raise MapError(
-            f"map generator {generator_name(generator)!r} returned {plan!r} of type {type(plan).__name__}; "
-            "a Floorplan is needed"
+            f"map generator {generator_name(generator)!r} returned an object of type "
+            f"{type(plan).__name__}; a Floorplan is needed"
         )
     x, y, _ = plan.start
     if not (plan.bounds[0] <= x <= plan.bounds[2] and plan.bounds[1] <= y <= plan.bounds[3]):

@@ -8,11 +8,11 @@ import numpy as np
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
-from lidarena.world.arenas import Arena
+from lidarena.world.arenas import Arena, ArenaGenerator
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.random_arenas import DENSITY
 
-ArenaSpec = str | Arena | Floorplan
+ArenaSpec = str | Arena | Floorplan | ArenaGenerator
 REWARD_TERMS = ("progress", "success", "collision", "time", "clearance", "turn")
 """Terms of the reward; the keyword ``<term>_weight`` weighs each."""
 _CHOICES = {
@@ -67,16 +67,19 @@ class ArenaOptions:
     Attributes:
         arena: What :func:`lidarena.world.arenas.load_arena` takes (``"yang"``, ``"yang:arc"``, ``"yang:u"``,
             ``"gnron"``, ``"u_trap:SEED"``, ``"random:SEED"``, ``"barn:INDEX"``, a floor plan); a family without its
-            number, ``"random"``, ``"u_trap"`` or ``"barn"``, of which every episode draws another; or a list of these.
+            number, ``"random"``, ``"u_trap"`` or ``"barn"``, of which every episode draws another; a generator of one's
+            own or its ``"module:callable"``, a function of a ``numpy.random.Generator`` that draws an ``Arena`` or a
+            ``Floorplan`` for every episode; or a list of these.
         density: Share of the room that the circles of ``"random"`` arenas cover, or a list of shares to draw from.
         path: The BARN file, for ``"barn"`` and ``"barn:INDEX"``.
         start: x, y instead of the arena's own [m].
         goal: x, y instead of the arena's own [m]; a floor plan has none and needs it.
-        arenas: How many different ``"random"`` arenas and U traps the episodes draw from. Their numbers begin at 2³¹,
-            beyond those that ``pick="by_seed"`` meets, so that what is trained on is not what is evaluated on.
+        arenas: How many different ``"random"`` arenas, U traps and arenas of a generator the episodes draw from. Their
+            numbers begin at 2³¹, beyond those that ``pick="by_seed"`` meets, so that what is trained on is not what is
+            evaluated on.
         pick: Which arena a reset takes: ``"random"`` draws it, ``"by_seed"`` takes number s of a family or list after
             ``reset(seed=s)`` (of two or more entries number s // n of entry s mod n), and draws where no seed is given.
-        solvable: Pass over ``"random"`` arenas in which A* finds no path.
+        solvable: Pass over ``"random"`` arenas, and a generator's, in which A* finds no path.
         action: ``"continuous"`` or ``"discrete"`` headings.
         observation: ``"ranges"`` shows the beams over the longest range, ``"proximity"`` the robot's radius over them,
             which tells near obstacles apart: 1 is contact.
@@ -154,8 +157,8 @@ class ArenaOptions:
 
     def _check_arenas(self) -> None:
         specs = self.specs
-        if not specs or not all(isinstance(spec, str | Arena | Floorplan) for spec in specs):
-            raise ConfigError(f"arena = {self.arena!r} must be an arena's name, an arena, or a list of them")
+        if not specs or not all(isinstance(spec, str | Arena | Floorplan) or callable(spec) for spec in specs):
+            raise ConfigError(f"arena = {self.arena!r} must be an arena or its name, a generator, or a list of them")
         if not self.densities:
             raise ConfigError(f"density = {self.density!r} must be a number or a list of numbers")
         for share in self.densities:

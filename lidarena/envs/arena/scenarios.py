@@ -7,12 +7,12 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.errors import ConfigError
+from lidarena.base.errors import ConfigError, MapError
 from lidarena.envs.arena.options import ArenaOptions, ArenaSpec
 from lidarena.planning.potential_field.circle_grid import astar_path
 from lidarena.planning.potential_field.field_scene import make_scene
 from lidarena.planning.potential_field.regression_search import path_length
-from lidarena.world.arenas import Arena, load_arena
+from lidarena.world.arenas import Arena, ArenaGenerator, arena_generator, draw_arena, load_arena
 from lidarena.world.barn import barn_indices, load_barn
 from lidarena.world.floorplan import Floorplan
 
@@ -45,12 +45,16 @@ class Scenario:
 
 @dataclass(frozen=True)
 class _Entry:
-    """One of the arenas or families that the keywords name; ``numbers`` are a family's, () for any."""
+    """One of the arenas or families that the keywords name; ``numbers`` are a family's, () for any.
+
+    A generator is a family: its number says what it draws with.
+    """
 
     spec: ArenaSpec
     family: bool
     density: float | None = None
     numbers: tuple[int, ...] = ()
+    generator: ArenaGenerator | None = None
 
 
 class ScenarioGenerator:
@@ -109,15 +113,29 @@ class ScenarioGenerator:
             MapError: See the class.
         """
         chosen, options = self._entries[entry], self._options
+        if chosen.generator is not None:
+            return self._generated(chosen.generator, number)
         spec = f"{chosen.spec}:{number}" if chosen.family else chosen.spec
         text = spec if isinstance(spec, str) else ""
         path = options.path if text.startswith("barn:") else None
         ends = tuple(None if end is None else tuple(end) for end in (options.start, options.goal))
-        if not isinstance(spec, str):
+        if isinstance(spec, Arena | Floorplan):
             return _laid_out(load_arena(spec, start=ends[0], goal=ends[1]))
-        scenario = _named_scenario(spec, path, chosen.density, ends)
+        scenario = _named_scenario(text, path, chosen.density, ends)
         if options.solvable and chosen.spec == "random" and not _has_path(scenario.arena):
             return self.scenario(entry, number + _NEXT_TRY)
+        return scenario
+
+    def _generated(self, generator: ArenaGenerator, number: int) -> Scenario:
+        drawn = draw_arena(generator, number)
+        scenario = _laid_out(load_arena(drawn, start=self._options.start, goal=self._options.goal))
+        if scenario.arena.scale != getattr(self, "scale", scenario.arena.scale):
+            raise MapError(
+                f"arena {scenario.arena.name!r} has scale {scenario.arena.scale:g}; those of one environment must all "
+                f"have {self.scale:g}, since speed and lidar go with it"
+            )
+        if self._options.solvable and not _has_path(scenario.arena):
+            return self._generated(generator, number + _NEXT_TRY)
         return scenario
 
 
@@ -130,6 +148,9 @@ def _entries_of(spec: ArenaSpec, options: ArenaOptions) -> list[_Entry]:
         if options.path is None:
             raise ConfigError("arena 'barn' is read from a file; give its path, as in path='barn_even_150.npz'")
         return [_Entry(spec, True, numbers=tuple(barn_indices(options.path)))]
+    generator = arena_generator(spec)
+    if generator is not None:
+        return [_Entry(spec, True, generator=generator)]
     fixed = isinstance(spec, str) and spec.startswith("random:") and "density=" not in spec
     return [_Entry(spec, False, options.densities[0] if fixed else None)]
 

@@ -7,8 +7,8 @@ from typing import Any, TypedDict
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.load import MapSpec
 
-MapSpec = str | Floorplan
 Points = Sequence[Sequence[float]]
 
 MOST_ROBOTS = 64
@@ -69,6 +69,8 @@ class CorridorOptions:
 
     Attributes:
         map: Floor plan: ``office``, ``unstructured``, ``passing``, ``blocked``, or any other (see ``load_floorplan``).
+            A generator draws one when the environment is made, for all its worlds and episodes: the ways to every goal
+            and the planners' graphs are laid out once, which takes longer than many an episode.
         robots: Size of the team.
         places: Where robots start and go: ``"predefined"`` (the map's own places; where there is a set of them, both
             are drawn from it), ``"random"`` (any places, such that the problem is solvable), the path of a MovingAI
@@ -149,8 +151,8 @@ class CorridorOptions:
         check_step_limit(self.max_episode_steps)
         for name in ("collision_ends", "expose_truth"):
             check_switch(name, getattr(self, name))
-        if not isinstance(self.map, str | Floorplan):
-            raise ConfigError(f"map = {self.map!r} must be a floor plan's name or file")
+        if not isinstance(self.map, str | Floorplan) and not callable(self.map):
+            raise ConfigError(f"map = {self.map!r} must be a floor plan's name, file or generator")
         if self.places is not None and (
             not isinstance(self.places, str) or not (self.places in _PLACES or self.places.endswith(".scen"))
         ):
