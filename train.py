@@ -9,6 +9,7 @@ import json
 import sys
 
 from lidarena import agents
+from lidarena.agents.learner_config import PPOConfig
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.base.errors import LidarenaError
 
@@ -53,13 +54,22 @@ def _config(options: argparse.Namespace) -> TrainingConfig:
 def _summary(config: TrainingConfig) -> str:
     """What is going to happen, in three lines."""
     keywords = "".join(f", {key}={value!r}" for key, value in config.env.keywords.items())
-    ppo = config.ppo
     return (
         f"env:      {config.env.id}{keywords}\n"
         f"schedule: {config.total_steps:,} steps of {config.num_envs} worlds, seed {config.seed}, "
         f"a checkpoint every {config.checkpoint_every:,}\n"
-        f"PPO:      {ppo.n_steps} steps × {config.num_envs} worlds an update, batches of {ppo.batch_size}, "
-        f"{ppo.n_epochs} epochs, learning rate {ppo.learning_rate}"
+        f"learner:  {config.algorithm}, {_learner(config)}, learning rate {config.learner.learning_rate}"
+    )
+
+
+def _learner(config: TrainingConfig) -> str:
+    learner, worlds = config.learner, config.num_envs
+    if isinstance(learner, PPOConfig):
+        batches = f"batches of {learner.batch_size}, {learner.n_epochs} epochs"
+        return f"{learner.n_steps} steps × {worlds} worlds an update, {batches}"
+    return (
+        f"{learner.train_freq} steps × {worlds} worlds and {learner.gradient_steps} batches of {learner.batch_size} "
+        f"an update, a memory of {learner.buffer_size:,}"
     )
 
 

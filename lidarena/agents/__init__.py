@@ -1,10 +1,10 @@
-"""Learned agents: training with PPO, checkpoints, policy files.
+"""Learned agents: training, checkpoints, policy files.
 
     from lidarena import agents
 
     config = agents.load_config("configs/train/quick.yaml", agents.TrainingConfig, ["seed=1"])
     folder = agents.train(config)
-    policy = agents.load(folder)
+    policy = agents.load(folder, env)
 
 PyTorch and Stable-Baselines3 are imported when one of these names is used for the first time.
 """
@@ -15,7 +15,8 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from lidarena.agents.interruption import TrainingStopped
     from lidarena.agents.learned_policy import LearnedPolicy
-    from lidarena.agents.policy_file import load, save_policy
+    from lidarena.agents.loading import load, ready
+    from lidarena.agents.policy_file import save_policy
     from lidarena.agents.shipped import pretrained
     from lidarena.agents.training import train
     from lidarena.agents.training_config import TrainingConfig
@@ -30,6 +31,7 @@ __all__ = [
     "load",
     "load_config",
     "pretrained",
+    "ready",
     "save_policy",
     "train",
 ]
@@ -40,9 +42,10 @@ _HOMES = {
     "TrainingConfig": "lidarena.agents.training_config",
     "TrainingStopped": "lidarena.agents.interruption",
     "dump_config": "lidarena.base.yaml_config",
-    "load": "lidarena.agents.policy_file",
+    "load": "lidarena.agents.loading",
     "load_config": "lidarena.base.yaml_config",
     "pretrained": "lidarena.agents.shipped",
+    "ready": "lidarena.agents.loading",
     "save_policy": "lidarena.agents.policy_file",
     "train": "lidarena.agents.training",
 }

@@ -41,9 +41,10 @@ class StopRequest:
 
 @contextmanager
 def stop_on_signal() -> Iterator[StopRequest]:
-    """Turn the first Ctrl-C (or SIGTERM) into a request; the second one acts as usual.
+    """Turn the first Ctrl-C (or SIGTERM) into a request, and the second one into a ``KeyboardInterrupt``.
 
-    Outside the main thread, where Python delivers no signals, nothing is changed.
+    That holds whatever they did before: a shell starts programs in the background with Ctrl-C ignored. A third one acts
+    as usual. Outside the main thread, where Python delivers no signals, nothing is changed.
     """
     request = StopRequest()
     if threading.current_thread() is not threading.main_thread():
@@ -56,8 +57,10 @@ def stop_on_signal() -> Iterator[StopRequest]:
             signal.signal(number, handler)
 
     def ask(number: int, frame: FrameType | None) -> None:
+        if request.requested:
+            restore()
+            raise KeyboardInterrupt
         request.requested = True
-        restore()
         print("\nStopping after this update; once more to stop at once.", file=sys.stderr, flush=True)
 
     for number in _SIGNALS:

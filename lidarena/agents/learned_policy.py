@@ -1,40 +1,54 @@
 """A trained network as a policy: the same two methods as every baseline."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
 import torch
 from gymnasium import spaces
 from numpy.typing import NDArray
-from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.policies import BasePolicy
+from stable_baselines3.common.preprocessing import is_image_space
+from stable_baselines3.common.vec_env.vec_transpose import VecTransposeImage
 
+from lidarena.agents.acting import Memory, has_probabilities, is_squashed, output_of, pick, wants_masks
+from lidarena.agents.observation_normalizer import ObservationNormalizer
 from lidarena.base.errors import PolicyFileError
+
+_NEVER = -1e8
+"""Logit of an action that a mask rules out."""
 
 
 class LearnedPolicy:
     """A trained agent; `lidarena.agents.load` makes it.
 
-    It carries no memory from step to step: what it knows of the past is in the observation.
-
     Attributes:
-        network: Stable-Baselines3's policy.
+        network: Stable-Baselines3's or sb3-contrib's policy.
         observation_space: Of the environment that it was trained in.
         action_space: Of the environment that it was trained in.
         env_id: Gymnasium id of that environment.
-        env_keywords: Keywords of that environment. Those that change what an observation means (``observation``,
-            ``reward``, ``action``) belong to any environment that the policy is to drive in.
-        training: What is known of the training: steps, seed, and so on.
+        env_keywords: Keywords of that environment. Those that change what an observation or action means
+            (``observation``, ``action``, …) belong to any environment that the policy is to drive in.
+        training: What is known of the training: algorithm, steps, seed, and so on.
         deterministic: Whether `act` takes the most probable action or draws one.
+        normalizer: Of the observations; None if the network sees them as they are.
+        memory: What a recurrent network remembers of the episode; None at its beginning, and for other networks.
     """
 
     def __init__(
         self,
-        network: ActorCriticPolicy,
+        network: BasePolicy,
         env_id: str,
         env_keywords: dict[str, Any],
         training: dict[str, Any],
         deterministic: bool = True,
+        normalizer: ObservationNormalizer | None = None,
     ) -> None:
+        if not deterministic and not has_probabilities(network):
+            raise PolicyFileError(
+                "an agent of QRDQN has no probabilities from which an action could be drawn; "
+                "load it with deterministic=True"
+            )
         network.set_training_mode(False)
         self.network = network
         self.observation_space: spaces.Space[Any] = network.observation_space
@@ -43,56 +57,101 @@ class LearnedPolicy:
         self.env_keywords = env_keywords
         self.training = training
         self.deterministic = deterministic
+        self.normalizer = normalizer
+        self.memory: Memory | None = None
+        self._masks: Callable[[], Any] | None = None
         self._rng = np.random.default_rng()
 
     def reset(self, seed: int | None = None) -> None:
-        """Start an episode.
+        """Start an episode, of which nothing is remembered yet.
 
         Args:
             seed: Of the actions that are drawn; it changes nothing if ``deterministic``.
         """
         self._rng = np.random.default_rng(seed)
+        self.memory = None
+
+    def ask_for_masks(self, env: Any) -> None:
+        """Take the masks of allowed actions from an environment, if the network was trained with masks.
+
+        Raises:
+            PolicyFileError: The environment has no ``action_masks()``.
+        """
+        if not wants_masks(self.network):
+            return
+        if hasattr(env, "has_wrapper_attr") and env.has_wrapper_attr("action_masks"):
+            self._masks = env.get_wrapper_attr("action_masks")
+        elif hasattr(env, "action_masks"):
+            self._masks = env.action_masks
+        else:
+            raise PolicyFileError(
+                f"the policy was trained in {self.env_id!r} with masks, but this environment has no action_masks()"
+            )
 
     def act(self, observation: Any, info: dict[str, Any] | None = None) -> Any:
         """Choose an action.
 
         Args:
             observation: One world's, as the environment returned it.
-            info: Not read; every policy gets it.
+            info: Read only where the network was trained with masks and was loaded without an environment: the mask is
+                ``info["action_mask"]`` then.
 
         Returns:
             An int for a `Discrete` action space, else an array of the action space's shape, inside its bounds.
 
         Raises:
-            PolicyFileError: The observation is not of the kind that the policy was trained on.
+            PolicyFileError: The observation is not of the kind that the policy was trained on, or a mask is missing.
         """
         self._check(observation)
-        space, network = self.action_space, self.network
+        if self.normalizer is not None:
+            observation = self.normalizer.apply(observation)
         with torch.inference_mode():
-            tensors, _ = network.obs_to_tensor(observation)
-            features: Any = network.extract_features(tensors, network.pi_features_extractor)
-            outputs = network.action_net(network.mlp_extractor.forward_actor(features))
-            if isinstance(space, spaces.Discrete):
-                return int(np.argmax(self._logits(outputs)))
-            if isinstance(space, spaces.Box):
-                return np.clip(self._numbers(outputs), space.low, space.high).astype(space.dtype).reshape(space.shape)
-            if not self.deterministic:
-                raise PolicyFileError(f"actions of {space} cannot be drawn; load the policy with deterministic=True")
-            distribution = network.get_distribution(tensors)
-            return distribution.get_actions(deterministic=True).cpu().numpy().reshape(space.shape)
+            tensors, _ = self.network.obs_to_tensor(observation)
+            values, log_std, self.memory = output_of(self.network, tensors, self.memory)
+            if isinstance(self.action_space, spaces.Box):
+                return self._number(values, log_std, self.action_space)
+            logits = values.cpu().numpy()[0].astype(np.float64)
+        return self._choice(logits, info or {})
 
-    def _logits(self, outputs: torch.Tensor) -> NDArray[np.float64]:
-        """Logits whose largest is the action: of the network, or shaken so that it is a draw (the Gumbel trick)."""
-        logits: NDArray[np.float64] = outputs.cpu().numpy()[0].astype(np.float64)
-        return logits if self.deterministic else logits + self._rng.gumbel(size=logits.shape)
+    def _choice(self, logits: NDArray[np.float64], info: dict[str, Any]) -> Any:
+        """The best of the allowed actions, or a draw from them (the Gumbel trick)."""
+        space, masked = self.action_space, wants_masks(self.network)
+        if masked:
+            logits = np.where(self._mask(info, logits.size), logits, _NEVER)
+        if not self.deterministic:
+            logits = logits + self._rng.gumbel(size=logits.shape)
+        if isinstance(space, spaces.Discrete):
+            return int(np.argmax(logits))
+        if isinstance(space, spaces.MultiDiscrete):
+            return pick(logits, space.nvec.ravel().tolist()).astype(space.dtype).reshape(space.shape)
+        if masked:  # two logits a bit
+            return pick(logits, [2] * (logits.size // 2)).astype(space.dtype).reshape(space.shape)
+        against = 0.0 if self.deterministic else self._rng.gumbel(size=logits.shape)
+        return (logits > against).astype(space.dtype).reshape(space.shape)
 
-    def _numbers(self, outputs: torch.Tensor) -> NDArray[np.float64]:
+    def _mask(self, info: dict[str, Any], size: int) -> NDArray[np.bool_]:
+        mask = self._masks() if self._masks is not None else info.get("action_mask")
+        if mask is None:
+            raise PolicyFileError(
+                f"the policy was trained in {self.env_id!r} with masks: load it with its environment, "
+                "or give act() an info with 'action_mask'"
+            )
+        flat = np.asarray(mask, dtype=np.bool_).ravel()
+        if flat.size != size:
+            raise PolicyFileError(f"the policy was trained with masks of {size} actions, but this one has {flat.size}")
+        return flat
+
+    def _number(self, mean: torch.Tensor, log_std: torch.Tensor | None, space: spaces.Box) -> NDArray[Any]:
         """Mean of the Gaussian, or a draw from it; the policy's own generator makes a seed fix an episode."""
-        mean: NDArray[np.float64] = outputs.cpu().numpy()[0].astype(np.float64)
-        if self.deterministic:
-            return mean
-        deviation: NDArray[np.float64] = np.exp(self.network.log_std.cpu().numpy().astype(np.float64))
-        return mean + deviation * self._rng.standard_normal(mean.shape)
+        numbers = mean.cpu().numpy()[0].astype(np.float64)
+        if not self.deterministic and log_std is not None:
+            deviation = np.exp(log_std.cpu().numpy().astype(np.float64)).reshape(numbers.shape)
+            numbers = numbers + deviation * self._rng.standard_normal(numbers.shape)
+        if is_squashed(self.network):
+            squashed = torch.tanh(torch.as_tensor(numbers, dtype=torch.float32)).numpy().reshape(space.shape)
+            numbers = np.asarray(self.network.unscale_action(squashed))
+        action: NDArray[Any] = np.clip(numbers.reshape(space.shape), space.low, space.high).astype(space.dtype)
+        return action
 
     def _check(self, observation: Any) -> None:
         """Refuse an observation of another environment before PyTorch gets lost in it."""
@@ -108,9 +167,16 @@ class LearnedPolicy:
 
     def _check_shape(self, observation: Any, space: spaces.Space[Any], what: str) -> None:
         shape = None if isinstance(observation, dict) else np.shape(observation)
-        if shape != space.shape:
+        if shape != space.shape and not _is_turned_picture(observation, space):
             got = f"a dict with keys {sorted(observation)}" if shape is None else f"of shape {shape}"
             raise PolicyFileError(f"{self._whose()} shape {space.shape}, but {what} is {got}")
 
     def _whose(self) -> str:
         return f"the policy was trained in {self.env_id!r} on observations of"
+
+
+def _is_turned_picture(observation: Any, space: spaces.Space[Any]) -> bool:
+    """Whether it is a picture (height, width, channels), which Stable-Baselines3 turns to (channels, height, width)."""
+    picture = np.asarray(observation)
+    turned = is_image_space(space) and picture.ndim == 3
+    return turned and VecTransposeImage.transpose_image(picture).shape == space.shape

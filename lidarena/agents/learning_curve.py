@@ -10,30 +10,30 @@ from lidarena.base.files import write_text
 
 FILE = "progress.csv"
 
-COLUMNS = {
-    "step": None,
-    "seconds": None,
-    "steps_per_second": "time/steps_per_second",
-    "episodes": "rollout/episodes",
-    "episode_return": "rollout/ep_rew_mean",
-    "episode_length": "rollout/ep_len_mean",
-    "completeness": "rollout/completeness",
-    "success_rate": "rollout/success_rate",
-    "collision_rate": "rollout/collision_rate",
-    "learning_rate": "train/learning_rate",
-    "policy_loss": "train/policy_gradient_loss",
-    "value_loss": "train/value_loss",
-    "entropy_loss": "train/entropy_loss",
-    "approx_kl": "train/approx_kl",
-    "clip_fraction": "train/clip_fraction",
-    "explained_variance": "train/explained_variance",
+COLUMNS: dict[str, tuple[str, ...]] = {
+    "step": (),
+    "seconds": (),
+    "steps_per_second": ("time/steps_per_second",),
+    "episodes": ("rollout/episodes",),
+    "episode_return": ("rollout/ep_rew_mean",),
+    "episode_length": ("rollout/ep_len_mean",),
+    "completeness": ("rollout/completeness",),
+    "success_rate": ("rollout/success_rate",),
+    "collision_rate": ("rollout/collision_rate",),
+    "learning_rate": ("train/learning_rate",),
+    "policy_loss": ("train/policy_gradient_loss", "train/actor_loss"),
+    "value_loss": ("train/value_loss", "train/critic_loss", "train/loss"),
+    "entropy_loss": ("train/entropy_loss",),
+    "approx_kl": ("train/approx_kl",),
+    "clip_fraction": ("train/clip_fraction",),
+    "explained_variance": ("train/explained_variance",),
 }
-"""Columns of ``progress.csv`` and the names of the same in TensorBoard.
+"""Columns of ``progress.csv`` and the names of the same in TensorBoard, the first that a learner tells.
 
 ``episode_return`` (undiscounted), ``episode_length`` (steps), ``completeness`` (fraction at the end), ``success_rate``
-and ``collision_rate`` (fractions) are means over the last ``ppo.stats_window_size`` episodes, empty
-while there is none or where the environment does not tell them.
-``seconds`` is the time that the training has taken, pauses before a ``--resume`` left out.
+and ``collision_rate`` (fractions) are means over the last episodes (``stats_window_size`` of the
+learner's block), empty while there is none or where the environment does not tell them. Losses and the like are empty
+where a learner has none. ``seconds`` is the time that the training has taken, pauses before a ``--resume`` left out.
 """
 
 
@@ -61,7 +61,9 @@ class LearningCurve:
             seconds: Of training so far.
             values: By TensorBoard's names; those without a column go to TensorBoard only.
         """
-        known = {column: values.get(name) for column, name in COLUMNS.items() if name}
+        known = {
+            column: next((values[name] for name in names if name in values), None) for column, names in COLUMNS.items()
+        }
         row = {**known, "step": step, "seconds": round(seconds, 3)}
         with self._file.open("a", encoding="utf-8", newline="") as stream:
             csv.DictWriter(stream, COLUMNS, lineterminator="\n").writerow(

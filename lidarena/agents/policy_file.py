@@ -6,15 +6,16 @@ from pathlib import Path
 from typing import Any, Literal
 
 import safetensors.torch
-from gymnasium import spaces
 from pydantic import Field, ValidationError
 from safetensors import SafetensorError
 from stable_baselines3.common.base_class import BaseAlgorithm
-from stable_baselines3.common.policies import ActorCriticPolicy
+from stable_baselines3.common.policies import BasePolicy
 
 from lidarena.agents import space_json
 from lidarena.agents.learned_policy import LearnedPolicy
-from lidarena.agents.networks import Architecture, all_finite, describe, rebuild, set_weights, weights_of
+from lidarena.agents.network_weights import all_finite, set_weights, weights_of
+from lidarena.agents.networks import Architecture, describe, rebuild
+from lidarena.agents.observation_normalizer import PREFIX, ObservationNormalizer
 from lidarena.agents.shipped import resolve
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.base.errors import PolicyFileError
@@ -23,7 +24,8 @@ from lidarena.base.versions import library_versions
 from lidarena.base.yaml_config import ConfigModel
 
 FORMAT = "lidarena-policy"
-VERSION = 1
+VERSION = 2
+"""Of what is written; version 1, which knew PPO alone and no normalized observations, is read as well."""
 
 
 class PolicyCard(ConfigModel):
@@ -42,7 +44,7 @@ class PolicyCard(ConfigModel):
     """
 
     format: Literal["lidarena-policy"] = "lidarena-policy"
-    version: Literal[1] = 1
+    version: Literal[1, 2] = 2
     env: EnvironmentConfig
     observation_space: dict[str, Any]
     action_space: dict[str, Any]
@@ -53,7 +55,7 @@ class PolicyCard(ConfigModel):
 
 
 def save_policy(
-    model: BaseAlgorithm | ActorCriticPolicy,
+    model: BaseAlgorithm | BasePolicy,
     folder: str | Path,
     env_id: str,
     env_keywords: dict[str, Any] | None = None,
@@ -63,7 +65,8 @@ def save_policy(
     """Write ``policy.safetensors`` and ``policy.json``.
 
     Args:
-        model: Stable-Baselines3's PPO or its policy.
+        model: A learner of Stable-Baselines3 or sb3-contrib (PPO, MaskablePPO, RecurrentPPO, QRDQN, SAC, TQC), with
+            the statistics of the observations that its ``VecNormalize`` normalizes; or its policy alone.
         folder: Where; made if missing. Files of the same name are replaced once both new ones are whole.
         env_id: Gymnasium id of the environment it was trained in.
         env_keywords: Keywords of that environment.
@@ -77,9 +80,10 @@ def save_policy(
         PolicyFileError: The network is of a kind that cannot be rebuilt, or its weights are not finite.
     """
     network = model.policy if isinstance(model, BaseAlgorithm) else model
-    if not isinstance(network, ActorCriticPolicy):
-        raise PolicyFileError(f"a network of class {type(network).__name__} is no actor-critic policy")
-    weights = {key: tensor.cpu().contiguous() for key, tensor in weights_of(network).items()}
+    normalizer = ObservationNormalizer.of(model.get_vec_normalize_env()) if isinstance(model, BaseAlgorithm) else None
+    architecture = describe(network)
+    weights = weights_of(network) | (normalizer.tensors() if normalizer is not None else {})
+    weights = {key: tensor.cpu().contiguous() for key, tensor in weights.items()}
     if not all_finite(weights):
         raise PolicyFileError("the policy is not written, since some of its weights are not finite numbers")
     data = safetensors.torch.save(weights, metadata={"format": FORMAT})
@@ -87,7 +91,7 @@ def save_policy(
         env=EnvironmentConfig(id=env_id, keywords=env_keywords or {}),
         observation_space=space_json.to_json(network.observation_space),
         action_space=space_json.to_json(network.action_space),
-        architecture=describe(network),
+        architecture=architecture,
         weights_sha256=hashlib.sha256(data).hexdigest(),
         training=training or {},
         versions=library_versions(),
@@ -97,40 +101,37 @@ def save_policy(
     return write_text(Path(folder) / f"{name}.json", text + "\n")
 
 
-def load(path: str | Path, env: Any = None, deterministic: bool = True) -> LearnedPolicy:
-    """Load a trained policy.
+def read_policy(path: str | Path, deterministic: bool = True) -> LearnedPolicy:
+    """Read a trained policy.
 
     Args:
-        path: Run folder (or any folder with ``policy.json``), the ``.json`` or ``.safetensors`` file, or
-            ``"pretrained:NAME"``.
-        env: Environment, single or batch, in which the policy is to act; if given, its spaces are compared.
+        path: See `lidarena.agents.load`.
         deterministic: Whether the policy takes its most probable action or draws one.
 
     Returns:
-        A policy with ``reset(seed)`` and ``act(observation, info)``.
+        The network with what is known of its training.
 
     Raises:
         PolicyFileError: A file is missing, truncated or of another format (Stable-Baselines3's own ``.zip`` too, since
-            opening one can run code), or the policy belongs to an environment with other spaces.
+            opening one can run code).
     """
     card_file, weights_file = _find(resolve(path))
     card = _read_card(card_file)
-    network = rebuild(
-        card.architecture, space_json.from_json(card.observation_space), space_json.from_json(card.action_space)
-    )
+    space = space_json.from_json(card.observation_space)
+    network = rebuild(card.architecture, space, space_json.from_json(card.action_space))
     data = _read(weights_file)
     if hashlib.sha256(data).hexdigest() != card.weights_sha256:
         raise PolicyFileError(
             f"{str(weights_file)!r} is damaged or of another policy: it is not the file that {card_file.name} describes"
         )
     try:
-        set_weights(network, safetensors.torch.load(data))
+        tensors = safetensors.torch.load(data)
+        statistics = {name: tensors.pop(name) for name in [*tensors] if name.startswith(PREFIX)}
+        set_weights(network, tensors)
+        normalizer = ObservationNormalizer.from_tensors(statistics, space) if statistics else None
     except (SafetensorError, ValueError) as error:
         raise PolicyFileError(f"{str(weights_file)!r} does not fit {card_file.name}: {error}") from None
-    policy = LearnedPolicy(network, card.env.id, dict(card.env.keywords), dict(card.training), deterministic)
-    if env is not None:
-        _check_spaces(policy, env, str(path))
-    return policy
+    return LearnedPolicy(network, card.env.id, dict(card.env.keywords), dict(card.training), deterministic, normalizer)
 
 
 def _find(path: Path) -> tuple[Path, Path]:
@@ -177,9 +178,9 @@ def _read_card(path: Path) -> PolicyCard:
         raise PolicyFileError(f"{str(path)!r} is truncated or no JSON") from None
     if not isinstance(content, dict) or content.get("format") != FORMAT:
         raise PolicyFileError(f"{str(path)!r} does not describe a policy: its 'format' should be {FORMAT!r}")
-    if content.get("version") != VERSION:
+    if content.get("version") not in (1, VERSION):
         raise PolicyFileError(
-            f"{str(path)!r} is of format version {content.get('version')!r}, but this Lidarena reads version {VERSION}"
+            f"{str(path)!r} is of format version {content.get('version')!r}, but this Lidarena reads 1 to {VERSION}"
         )
     try:
         return PolicyCard.model_validate(content)
@@ -187,15 +188,3 @@ def _read_card(path: Path) -> PolicyCard:
         first = error.errors(include_url=False)[0]
         key = ".".join(str(part) for part in first["loc"])
         raise PolicyFileError(f"{str(path)!r} is damaged at {key!r}: {first['msg']}") from None
-
-
-def _check_spaces(policy: LearnedPolicy, env: Any, origin: str) -> None:
-    """Refuse an environment that shows something else or takes other actions than the one trained in."""
-    for what, trained in (("observation", policy.observation_space), ("action", policy.action_space)):
-        name = f"{what}_space"
-        space: spaces.Space[Any] = getattr(env, f"single_{name}" if hasattr(env, f"single_{name}") else name)
-        if space != trained:
-            raise PolicyFileError(
-                f"{origin!r} was trained in {policy.env_id!r} with {what}s {trained}, "
-                f"but this environment has {what}s {space}"
-            )

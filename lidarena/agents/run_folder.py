@@ -15,6 +15,8 @@ POLICY_FILES = ("policy.safetensors", "policy.json")
 _MAY_CHANGE = ("total_steps", "checkpoint_every", "torch_threads", "out")
 """Keys that may differ when a training goes on: no world or update is another for them, except that a learning rate
 with a start and an end falls over ``total_steps``, anew from where the training is when they are raised."""
+_NEWER = {"algorithm": "PPO", "normalize_observation": False}
+"""Keys that the first version did not know, with what it did; where nothing else is asked for they are left out."""
 
 
 def claim(out: str | Path, exact: bool = False) -> Path:
@@ -77,15 +79,16 @@ def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path | N
     for key in sorted(old.keys() | new.keys()):
         if old.get(key) != new.get(key):
             raise ConfigError(
-                f"the run {str(folder)!r} was trained with {key} = {old.get(key)!r}, so it cannot go on with "
-                f"{new.get(key)!r}; only {', '.join(_MAY_CHANGE)} may change"
+                f"the run {str(folder)!r} was trained with {key} = {old.get(key, _NEWER.get(key))!r}, so it cannot go "
+                f"on with {new.get(key, _NEWER.get(key))!r}; only {', '.join(_MAY_CHANGE)} may change"
             )
     return checkpoint.newest(Path(folder))
 
 
 def fixed_part(config: TrainingConfig) -> dict[str, Any]:
     """Return the keys, as ``--set`` spells them, that must stay the same when a training goes on, with their values."""
-    return _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
+    flat = _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
+    return {key: value for key, value in flat.items() if key not in _NEWER or value != _NEWER[key]}
 
 
 def keep_policy(folder: Path) -> Path | None:

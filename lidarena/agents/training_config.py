@@ -1,10 +1,24 @@
 """The training file: what is trained where, for how long, and with which hyper-parameters."""
 
 import math
+from collections.abc import Callable
 from typing import Annotated, Any, Literal, Self
 
-from pydantic import BeforeValidator, ConfigDict, Field, field_validator, model_validator
+from pydantic import BeforeValidator, ConfigDict, Field, field_validator, model_serializer, model_validator
 
+from lidarena.agents.learner_config import (
+    BLOCKS,
+    ON_POLICY,
+    Algorithm,
+    LearnerConfig,
+    MaskablePPOConfig,
+    OffPolicyConfig,
+    PPOConfig,
+    QRDQNConfig,
+    RecurrentPPOConfig,
+    SACConfig,
+    TQCConfig,
+)
 from lidarena.base.yaml_config import ConfigModel
 
 PolicyClass = Literal["MlpPolicy", "CnnPolicy", "MultiInputPolicy", "CandidatePolicy"]
@@ -43,57 +57,6 @@ class EnvironmentConfig(ConfigModel):
         return keywords
 
 
-class Linear(ConfigModel):
-    """A value that runs in a straight line over the training.
-
-    Attributes:
-        start: At the first step.
-        end: At the last step.
-    """
-
-    start: float = Field(gt=0)
-    end: float = Field(default=0.0, ge=0)
-
-
-Scheduled = Annotated[float, Field(gt=0)] | Linear
-
-
-class PPOConfig(ConfigModel):
-    """Proximal policy optimisation (Schulman et al. 2017) under Stable-Baselines3's names and defaults.
-
-    Attributes:
-        learning_rate: Of Adam; a number, or ``{start: 1e-3, end: 0}`` for a line over the training.
-        n_steps: Steps of every world between two updates, so an update sees ``n_steps × num_envs`` steps.
-        batch_size: Of one gradient step; it divides ``n_steps × num_envs``.
-        n_epochs: Passes over the steps of an update.
-        gamma: Discount factor.
-        gae_lambda: Bias against variance of the advantage estimate; 1 is Monte Carlo.
-        clip_range: How far a probability may move in one update; a number or a line.
-        clip_range_vf: The same for the value function; empty for no limit.
-        normalize_advantage: Whether every batch's advantages are shifted and scaled to mean 0, deviation 1.
-        ent_coef: Weight of the entropy bonus.
-        vf_coef: Weight of the value loss.
-        max_grad_norm: Gradients longer than this are shortened.
-        target_kl: An update ends early beyond 1.5 times this divergence; empty for no limit.
-        stats_window_size: Episodes over which the logged means are taken.
-    """
-
-    learning_rate: Scheduled = 3e-4
-    n_steps: int = Field(default=2048, ge=1, le=10_000_000)
-    batch_size: int = Field(default=64, ge=2)
-    n_epochs: int = Field(default=10, ge=1, le=10_000)
-    gamma: float = Field(default=0.99, gt=0, le=1)
-    gae_lambda: float = Field(default=0.95, ge=0, le=1)
-    clip_range: Scheduled = 0.2
-    clip_range_vf: Scheduled | None = None
-    normalize_advantage: bool = True
-    ent_coef: float = Field(default=0.0, ge=0)
-    vf_coef: float = Field(default=0.5, ge=0)
-    max_grad_norm: float = Field(default=0.5, gt=0)
-    target_kl: float | None = Field(default=None, gt=0)
-    stats_window_size: int = Field(default=100, ge=1, le=1_000_000)
-
-
 class PolicyConfig(ConfigModel):
     """The network.
 
@@ -101,15 +64,16 @@ class PolicyConfig(ConfigModel):
         class_name: ``class`` in a file: one of Stable-Baselines3's policies, ``CandidatePolicy`` (one row a candidate,
             see `candidate_policy`), or ``auto``: ``MultiInputPolicy`` for dict observations, ``CnnPolicy`` for images,
             ``MlpPolicy`` otherwise.
-        net_arch: Widths of the hidden layers, ``[64, 64]`` for actor and critic each, or ``{pi: […], vf: […]}``;
-            Stable-Baselines3's default if left out.
-        activation: Between the layers.
+        net_arch: Widths of the hidden layers, ``[64, 64]`` for actor and critic each, or ``{pi: […], vf: […]}``, or
+            ``{pi: […], qf: […]}`` for SAC and TQC; Stable-Baselines3's default if left out.
+        activation: Between the layers; in a training file that leaves it out, ``tanh`` for PPO and its kin and ``relu``
+            for the others, as in the libraries.
     """
 
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
 
     class_name: PolicyClass | Literal["auto"] = Field(default="auto", alias="class")
-    net_arch: Layers | dict[Literal["pi", "vf"], Layers] | None = None
+    net_arch: Layers | dict[str, Layers] | None = None
     activation: Activation = "tanh"
 
 
@@ -118,15 +82,24 @@ class TrainingConfig(ConfigModel):
 
     Attributes:
         env: Environment; a plain id stands for one without keywords.
+        algorithm: Who learns: ``PPO``, ``MaskablePPO``, ``RecurrentPPO``, ``QRDQN``, ``SAC`` or ``TQC``.
         seed: Of everything: networks, sampling, and world i of the batch on ``seed + i``.
         total_steps: Steps of all worlds together; the training ends with the update that reaches them.
         num_envs: Worlds that step in one call.
         checkpoint_every: Steps between two checkpoints, each taken at the end of an update; there is always one at
             the end.
         normalize_reward: Whether rewards are divided by the running deviation of the discounted return (and cut off at
-            ±10 deviations) before PPO sees them. Logged returns are those of the environment. Worth it where one
-            episode sums to some 100, as with ``completeness``: the value loss grows with the square.
-        ppo: Hyper-parameters.
+            ±10 deviations) before they are learned from. Logged returns are those of the environment. Worth it where
+            one episode sums to some 100, as with ``completeness``: the value loss grows with the square.
+        normalize_observation: Whether the numbers of an observation are shifted and scaled to their running mean and
+            deviation, and cut off at ±10 deviations; pictures are left alone. The policy file holds both, so that the
+            loaded policy does the same.
+        ppo: Hyper-parameters of ``algorithm: PPO``; the blocks of the others are for those alone.
+        maskable_ppo: Of ``algorithm: MaskablePPO``.
+        recurrent_ppo: Of ``algorithm: RecurrentPPO``.
+        qrdqn: Of ``algorithm: QRDQN``.
+        sac: Of ``algorithm: SAC``.
+        tqc: Of ``algorithm: TQC``.
         policy: Network; a plain class name stands for one with defaults.
         device: Where the network computes: ``cpu`` or ``cuda``.
         torch_threads: Threads of PyTorch; more than one rarely pays for networks this small.
@@ -134,31 +107,91 @@ class TrainingConfig(ConfigModel):
     """
 
     env: Annotated[EnvironmentConfig, _named("id")]
+    algorithm: Algorithm = "PPO"
     seed: int = Field(default=0, ge=0, lt=2**31)
     total_steps: int = Field(default=1_000_000, ge=1, le=10**13)
     num_envs: int = Field(default=64, ge=1, le=65_536)
     checkpoint_every: int = Field(default=500_000, ge=1)
     normalize_reward: bool = False
-    ppo: PPOConfig = PPOConfig()
+    normalize_observation: bool = False
+    ppo: PPOConfig | None = None
+    maskable_ppo: MaskablePPOConfig | None = None
+    recurrent_ppo: RecurrentPPOConfig | None = None
+    qrdqn: QRDQNConfig | None = None
+    sac: SACConfig | None = None
+    tqc: TQCConfig | None = None
     policy: Annotated[PolicyConfig, _named("class")] = PolicyConfig()
     device: Literal["cpu", "cuda"] = "cpu"
     torch_threads: int = Field(default=1, ge=1, le=1024)
     out: str = Field(default="runs/training", min_length=1)
 
+    @model_validator(mode="before")
+    @classmethod
+    def _fill_in_what_depends_on_the_algorithm(cls, content: Any) -> Any:
+        if not isinstance(content, dict) or content.get("algorithm", "PPO") not in list(BLOCKS):
+            return content
+        block = BLOCKS[content.get("algorithm", "PPO")]
+        policy = content.get("policy", {})
+        policy = {"class": policy} if isinstance(policy, str) else policy
+        if isinstance(policy, dict):
+            policy = {"activation": "tanh" if block in ON_POLICY else "relu"} | policy
+        filled = {**content, "policy": policy}
+        return filled if filled.get(block) is not None else filled | {block: {}}
+
     @model_validator(mode="after")
-    def _batches_fill_the_rollout(self) -> Self:
-        rollout = self.rollout_steps
-        if rollout % self.ppo.batch_size:
+    def _one_learner(self) -> Self:
+        for algorithm, block in BLOCKS.items():
+            if algorithm != self.algorithm and getattr(self, block) is not None:
+                raise ValueError(
+                    f"{block!r} is the block of {algorithm}, but 'algorithm' is {self.algorithm}, whose block is "
+                    f"{BLOCKS[self.algorithm]!r}"
+                )
+        return self
+
+    @model_validator(mode="after")
+    def _the_learner_fits_the_batch(self) -> Self:
+        learner = getattr(self, BLOCKS[self.algorithm])
+        if isinstance(learner, OffPolicyConfig):
+            self._check_memory(learner)
+        elif self.algorithm != "RecurrentPPO" and (rollout := learner.n_steps * self.num_envs) % learner.batch_size:
+            block = BLOCKS[self.algorithm]
             raise ValueError(
-                f"'ppo.batch_size' is {self.ppo.batch_size}, but it should divide ppo.n_steps × num_envs = {rollout}"
-                f"{_nearest_divisor(rollout, self.ppo.batch_size)}"
+                f"'{block}.batch_size' is {learner.batch_size}, but it should divide {block}.n_steps × num_envs = "
+                f"{rollout}{_nearest_divisor(rollout, learner.batch_size)}"
             )
         return self
 
+    @model_validator(mode="after")
+    def _the_learner_has_these_networks(self) -> Self:
+        block, layers = BLOCKS[self.algorithm], self.policy.net_arch
+        parts = {"pi", "vf"} if block in ON_POLICY else set() if block == "qrdqn" else {"pi", "qf"}
+        if isinstance(layers, dict) and set(layers) != parts:
+            wanted = f"{{{', '.join(f'{part}: […]' for part in sorted(parts))}}} or a list" if parts else "a list"
+            raise ValueError(f"'policy.net_arch' is {layers}, but {self.algorithm} takes {wanted}")
+        return self
+
+    def _check_memory(self, learner: OffPolicyConfig) -> None:
+        block = BLOCKS[self.algorithm]
+        if learner.buffer_size < self.num_envs:
+            raise ValueError(
+                f"'{block}.buffer_size' is {learner.buffer_size}, but it should be at least num_envs = {self.num_envs}"
+            )
+        if isinstance(learner, QRDQNConfig) and learner.target_update_interval < self.num_envs:
+            raise ValueError(
+                f"'{block}.target_update_interval' is {learner.target_update_interval}, but it should be at least "
+                f"num_envs = {self.num_envs}, as all worlds step together"
+            )
+
+    @model_serializer(mode="wrap")
+    def _without_the_blocks_of_others(self, dump: Callable[[Any], dict[str, Any]]) -> dict[str, Any]:
+        others = {block for algorithm, block in BLOCKS.items() if algorithm != self.algorithm}
+        return {key: value for key, value in dump(self).items() if key not in others}
+
     @property
-    def rollout_steps(self) -> int:
-        """Steps of all worlds together between two updates."""
-        return self.ppo.n_steps * self.num_envs
+    def learner(self) -> LearnerConfig:
+        """The block of the algorithm."""
+        block: LearnerConfig = getattr(self, BLOCKS[self.algorithm])
+        return block
 
 
 def _nearest_divisor(number: int, wanted: int) -> str:

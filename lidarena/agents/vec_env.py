@@ -2,11 +2,11 @@
 
 import time
 from collections.abc import Iterable, Sequence
-from typing import Any, Protocol, runtime_checkable
+from typing import Any, Protocol, TypeGuard, runtime_checkable
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import AutoresetMode, VectorEnv
+from gymnasium.vector import AutoresetMode, SyncVectorEnv, VectorEnv
 from numpy.typing import NDArray
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecEnv
@@ -16,7 +16,7 @@ from lidarena.base.errors import ConfigError
 
 Arrays = dict[str, NDArray[Any]]
 
-_LOGGED = ("completeness", "success", "collision")
+_LOGGED = ("completeness", "success", "is_success", "collision", "path_length", "time")
 
 
 @runtime_checkable
@@ -30,6 +30,11 @@ class Restorable(Protocol):
         """Continue where `get_state` was called."""
 
 
+def restorable(worlds: Any) -> TypeGuard[Restorable]:
+    """Whether a batch can be written down; one that only may be able to says so by an attribute ``restorable``."""
+    return isinstance(worlds, Restorable) and bool(getattr(worlds, "restorable", True))
+
+
 class BatchVecEnv(VecEnv):
     """Adapter from Gymnasium's `VectorEnv` with autoreset ``SAME_STEP`` to Stable-Baselines3's `VecEnv`.
 
@@ -38,8 +43,9 @@ class BatchVecEnv(VecEnv):
     - every array that `step_wait` returns is fresh, since the rollout buffer keeps the last one until the next step;
     - the ``info`` of a world that has just ended holds ``terminal_observation``, ``TimeLimit.truncated`` (true only if
       it was cut off without having terminated) and ``episode``: ``r`` return, ``l`` length in steps, ``t`` seconds
-      since the adapter was made, and, where the environment tells them, ``completeness`` (fraction), ``success`` and
-      ``collision`` (0 or 1). The ``info`` of every other world is empty.
+      since the adapter was made, and, where the environment tells them, ``completeness`` (fraction), ``success``,
+      ``is_success`` and ``collision`` (0 or 1), ``path_length`` [m] and ``time`` [s]; of a team their means over the
+      robots. The ``info`` of every other world is empty.
 
     Attributes:
         env: The batch.
@@ -105,7 +111,7 @@ class BatchVecEnv(VecEnv):
             "t": round(time.perf_counter() - self._started, 6),
         }
         final = infos.get("final_info", {})
-        episode.update({key: float(np.mean(final[key][world])) for key in _LOGGED if key in final})
+        episode.update({key: float(np.mean(final[key][world])) for key in _LOGGED if _tells(final, key, world)})
         self.episodes += 1
         return {
             "terminal_observation": _fresh(infos["final_obs"][world]),
@@ -134,7 +140,13 @@ class BatchVecEnv(VecEnv):
     def get_attr(self, attr_name: str, indices: int | Iterable[int] | None = None) -> list[Any]:
         """Return an attribute of the batch per world; one value per world is told apart, anything else repeated."""
         single = {"observation_space": "single_observation_space", "action_space": "single_action_space"}
-        return self._spread(getattr(self.env, single.get(attr_name, attr_name)), indices)
+        return self._spread(self._attribute(single.get(attr_name, attr_name)), indices)
+
+    def _attribute(self, name: str) -> Any:
+        """An attribute of the batch, or else of the single environments that it is made of."""
+        if not hasattr(self.env, name) and isinstance(self.env.unwrapped, SyncVectorEnv):
+            return self.env.unwrapped.get_attr(name)
+        return getattr(self.env, name)
 
     def set_attr(self, attr_name: str, value: Any, indices: int | Iterable[int] | None = None) -> None:
         """Set an attribute of the batch, which all worlds share.
@@ -148,7 +160,13 @@ class BatchVecEnv(VecEnv):
     def env_method(
         self, method_name: str, *method_args: Any, indices: int | Iterable[int] | None = None, **method_kwargs: Any
     ) -> list[Any]:
-        """Call a method of the batch once and return its result per world, as `get_attr` does."""
+        """Call a method of the batch once and return its result per world, as `get_attr` does.
+
+        A method that the batch does not have is called of every single environment that it is made of.
+        """
+        if not hasattr(self.env, method_name) and isinstance(self.env.unwrapped, SyncVectorEnv):
+            results = self.env.unwrapped.call(method_name, *method_args, **method_kwargs)
+            return self._spread(results, indices)
         return self._spread(getattr(self.env, method_name)(*method_args, **method_kwargs), indices)
 
     def env_is_wrapped(
@@ -171,6 +189,14 @@ class BatchVecEnv(VecEnv):
     def _require_all(self, indices: int | Iterable[int] | None, what: str) -> None:
         if set(self._get_indices(indices)) != set(range(self.num_envs)):
             raise NotImplementedError(f"{what} is shared by all worlds of a batch, so leave indices out")
+
+
+def _tells(info: dict[str, Any], key: str, world: int) -> bool:
+    """Whether a world's last info holds a number, or numbers, under this key."""
+    if key not in info or not info.get(f"_{key}", np.ones(world + 1, np.bool_))[world]:
+        return False
+    value = np.asarray(info[key][world])
+    return value.dtype.kind in "biuf" and value.size > 0
 
 
 def _fresh(observation: Any) -> Any:

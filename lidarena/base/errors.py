@@ -61,6 +61,7 @@ def suggest(word: str, allowed: Iterable[str]) -> str:
         Such as ``"; did you mean 'reward'? Allowed: action, map, reward"``.
     """
     names = sorted(allowed)
-    near = get_close_matches(word, names, n=1, cutoff=0.6)
-    hint = f"; did you mean {near[0]!r}?" if near else ";"
+    by_lower = {name.lower(): name for name in names}
+    near = get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
+    hint = f"; did you mean {by_lower[near[0]]!r}?" if near else ";"
     return f"{hint} Allowed: {', '.join(names)}"

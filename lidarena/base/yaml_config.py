@@ -102,9 +102,24 @@ def check_config(
             _apply(values, override)
         return model.model_validate(values)
     except ValidationError as error:
-        raise ConfigError(_sentence(error, model, origin)) from None
+        detail = _most_telling(error)
+        key = ".".join(_walk(model, detail["loc"])[0])
+        raise ConfigError(_sentence(detail, model, _blamed(content, model, overrides, key, origin))) from None
     except RecursionError:
         raise ConfigError(f"{origin} is nested too deeply or contains itself") from None
+
+
+def _blamed(content: Mapping[str, Any], model: type[BaseModel], overrides: Sequence[str], key: str, origin: str) -> str:
+    """Who is to blame for what is wrong at ``key``: the last override that sets it, all of them, or the file."""
+    for override in reversed(overrides):
+        name = override.partition("=")[0].strip()
+        if key and f"{key}.".startswith(f"{name}."):
+            return f"--set {override!r}"
+    try:
+        model.model_validate(_copy(content))
+    except ValidationError:
+        return origin
+    return f"{origin} with --set {' '.join(overrides)}" if overrides else origin
 
 
 def read_yaml(path: str | Path) -> dict[str, Any]:
@@ -204,10 +219,14 @@ def _apply(values: dict[str, Any], override: str) -> None:
             place = place[index]
 
 
-def _sentence(error: ValidationError, model: type[BaseModel], origin: str) -> str:
-    """The most telling of pydantic's errors, as one sentence."""
+def _most_telling(error: ValidationError) -> ErrorDetails:
+    """The error that a sentence is made of: a key that there is not, or the one deepest inside."""
     details = error.errors(include_url=False)
-    first = min(details, key=lambda detail: (detail["type"] != "extra_forbidden", -len(detail["loc"])))
+    return min(details, key=lambda detail: (detail["type"] != "extra_forbidden", -len(detail["loc"])))
+
+
+def _sentence(first: ErrorDetails, model: type[BaseModel], origin: str) -> str:
+    """One of pydantic's errors as one sentence."""
     path, kinds = _walk(model, first["loc"])
     key = ".".join(path)
     if first["type"] == "extra_forbidden":

@@ -26,12 +26,15 @@ class Registration:
         vector_entry_point: The same of the native batch; None if there is none.
         max_episode_steps: After which ``gym.make`` truncates.
         keywords: That the id stands for.
+        agent: ``"module:callable"`` of the policy by which a network that was trained under this id drives the family's
+            environments, called with the environment and the network; None: the network itself does.
     """
 
     entry_point: str | Callable[..., Any] | None = None
     vector_entry_point: str | Callable[..., Any] | None = None
     max_episode_steps: int | None = None
     keywords: Mapping[str, Any] = field(default_factory=dict)
+    agent: str | None = None
 
 
 @dataclass(frozen=True)
@@ -44,12 +47,15 @@ class Family:
         measures: ``"module:name"`` of the ``FamilyMeasures`` by which ``evaluate`` measures its episodes, tabulates and
             draws them; None: by what every environment tells.
         baselines: Module that registers its baselines when it is imported; None if there are none.
+        agent_options: What in the ``options`` of its environments says what an observation or an action means to an
+            agent, such as ``"observation"``, with dots where it is inside of another: ``"lidar.beams"``.
     """
 
     name: str
     ids: Mapping[str, Registration] = field(default_factory=dict)
     measures: str | None = None
     baselines: str | None = None
+    agent_options: tuple[str, ...] = ("observation", "action")
 
 
 _families: dict[str, Family] = {}
@@ -96,6 +102,15 @@ def family_named(name: str) -> Family:
     if name not in _families:
         raise ConfigError(f"no family of environments is named {name!r}{suggest(name, _families)}")
     return _families[name]
+
+
+def registration_of(env_id: str) -> tuple[Family, Registration] | None:
+    """Return the family that an id belongs to and how it is made; None for an id of somebody else's."""
+    name = env_id.rpartition(":")[2]
+    for family in _families.values():
+        if name in family.ids:
+            return family, family.ids[name]
+    return None
 
 
 def family_of(env: Any) -> str | None:

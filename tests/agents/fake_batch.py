@@ -137,6 +137,13 @@ class RestorableLineBatch(LineBatch):
             generator.bit_generator.state = {"bit_generator": "PCG64", "state": numbers, "has_uint32": 0, "uinteger": 0}
 
 
+class MaskedLineBatch(RestorableLineBatch):
+    """The same, and it never allows to go left."""
+
+    def action_masks(self) -> NDArray[Any]:
+        return np.tile([True, True, False], (self.num_envs, 1))
+
+
 class NextStepBatch(LineBatch):
     """Restarts one step too late."""
 
@@ -147,7 +154,12 @@ def _single(**keywords: Any) -> Any:
     raise NotImplementedError("the fake has batches only")
 
 
-_BATCHES = {"Line-v0": RestorableLineBatch, "Stranger-v0": LineBatch, "Late-v0": NextStepBatch}
+_BATCHES = {
+    "Line-v0": RestorableLineBatch,
+    "Masked-v0": MaskedLineBatch,
+    "Stranger-v0": LineBatch,
+    "Late-v0": NextStepBatch,
+}
 for _name, _batch in _BATCHES.items():
     if f"fakebatch/{_name}" not in gym.registry:
         gym.register(f"fakebatch/{_name}", entry_point=_single, vector_entry_point=_batch)

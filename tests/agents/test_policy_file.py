@@ -201,7 +201,7 @@ def test_weights_that_do_not_fit_the_architecture(run: Path) -> None:
     ("changes", "message"),
     [
         ({"format": "something"}, "'format' should be"),
-        ({"version": 2}, "format version 2"),
+        ({"version": 3}, "format version 3"),
         ({"version": None}, "format version None"),
         ({"surprise": 1}, "'surprise'"),
         ({"weights_sha256": "abc"}, "weights_sha256"),

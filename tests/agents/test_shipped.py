@@ -1,6 +1,11 @@
 """The shipped agents load, and drive in the environments they are for."""
 
+import hashlib
+import json
+from typing import Any
+
 import gymnasium as gym
+import numpy as np
 import pytest
 
 from lidarena import agents
@@ -8,6 +13,38 @@ from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
 from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.base.errors import PolicyFileError
 from lidarena.envs.corridor import SHARED_ID
+
+RECORDED = {
+    "arena": ("addd9e8083de9143", "9c66f16af133022c"),
+    "combined": ("eb0f6c72950363f0", "18f97acab8b46f01"),
+    "compass": ("acf8cde9527f8bb7", "206da757d61428b5"),
+    "completeness": ("fef08a23b24de84f", "7e693a01d54a9704"),
+    "uncertainty": ("79c180e74b4b26e4", "5c6a1e76f5c2bf8c"),
+}
+"""Digests of 100 actions, the most probable and the drawn ones, as version 0.1 took them."""
+
+
+def actions_of(name: str, deterministic: bool) -> list[Any]:
+    """What an agent does to 100 observations of noise."""
+    policy: Any = agents.load(f"pretrained:{name}", deterministic=deterministic)
+    space = policy.observation_space
+    low, high = np.clip(space.low, -1, 1), np.clip(space.high, -1, 1)
+    observations = np.random.default_rng(0).uniform(low, high, (100, *space.shape)).astype(space.dtype)
+    policy.reset(seed=0)
+    return [np.asarray(policy.act(observation)).tolist() for observation in observations]
+
+
+@pytest.mark.parametrize("name", RECORDED)
+def test_the_shipped_weights_act_as_in_the_first_version(name: str) -> None:
+    found = [json.dumps(actions_of(name, deterministic)).encode() for deterministic in (True, False)]
+    assert tuple(hashlib.sha256(actions).hexdigest()[:16] for actions in found) == RECORDED[name]
+
+
+def test_the_corridor_agent_acts_as_in_the_first_version() -> None:
+    best = [[-1.0, 0.5607743859291077], [-0.6903108954429626, -1.0], [0.9274628162384033, -1.0]]
+    drawn = [[-1.0, 0.504588782787323], [-0.40776681900024414, -1.0], [0.6911342144012451, -1.0]]
+    assert np.allclose(actions_of("corridor", True)[:3], best, atol=1e-5)
+    assert np.allclose(actions_of("corridor", False)[:3], drawn, atol=1e-5)
 
 
 @pytest.mark.parametrize("name", agents.pretrained())
@@ -39,7 +76,8 @@ def test_a_shipped_agent_drives(name: str) -> None:
 
 def test_the_combined_agent_explores_a_world_that_it_was_not_trained_in() -> None:
     env = gym.make("lidarena/Env4-v0", max_episode_steps=5000, stop_at=None)
-    policy = GoalChoiceAgent(env, agents.load("pretrained:combined"))
+    policy = agents.load("pretrained:combined", env)
+    assert isinstance(policy, GoalChoiceAgent)
     observation, info = env.reset(seed=4)
     policy.reset(seed=0)
     while True:

@@ -15,7 +15,7 @@ from tensorboard.backend.event_processing.event_accumulator import EventAccumula
 
 import lidarena.agents
 from lidarena.agents import TrainingStopped, load, load_config, train
-from lidarena.agents.training import first_world_seed
+from lidarena.agents.learners import first_world_seed
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.errors import ConfigError
 from lidarena.base.files import write_folder
@@ -82,6 +82,8 @@ def test_settings_reach_ppo(tmp_path: Path) -> None:
         "class": "MlpPolicy",
         "net_arch": [8],
         "activation": "relu",
+        "algorithm": "PPO",
+        "sizes": {},
     }
 
 
@@ -229,7 +231,12 @@ def test_ctrl_c_ends_the_training_after_the_update(
     assert signal.getsignal(number) is before
 
 
-def test_ctrl_c_twice_ends_it_at_once_and_keeps_the_policy(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.mark.parametrize("inherited", [signal.default_int_handler, signal.SIG_IGN])
+def test_ctrl_c_twice_ends_it_at_once_and_keeps_the_policy(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inherited: Any, request: pytest.FixtureRequest
+) -> None:
+    before = signal.signal(signal.SIGINT, inherited)  # shells start programs in the background with Ctrl-C ignored
+    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
     press_ctrl_c(monkeypatch, at_step=300, times=2)
     with pytest.raises(TrainingStopped, match=r"to go on from step \d+"):
         train(small(tmp_path / "run"))
@@ -237,6 +244,8 @@ def test_ctrl_c_twice_ends_it_at_once_and_keeps_the_policy(tmp_path: Path, monke
     press_ctrl_c(monkeypatch, at_step=10, times=2)
     with pytest.raises(TrainingStopped, match="it had no checkpoint yet"):
         train(small(tmp_path / "early"))
+    assert load(tmp_path / "early").training["steps"] < 64
+    assert signal.getsignal(signal.SIGINT) is inherited
 
 
 def test_training_works_outside_the_main_thread(tmp_path: Path) -> None:

@@ -9,7 +9,7 @@ from stable_baselines3.common.evaluation import evaluate_policy
 from stable_baselines3.common.monitor import Monitor
 from stable_baselines3.common.vec_env import VecNormalize
 
-from lidarena.agents.training import make_batch
+from lidarena.agents.batches import make_batch
 from lidarena.agents.training_config import EnvironmentConfig
 from lidarena.agents.vec_env import BatchVecEnv
 from lidarena.base.errors import ConfigError
@@ -177,7 +177,7 @@ def test_a_batch_that_restarts_late_is_refused() -> None:
         ({"id": "no_such_module_of_mine:a-v0"}, "module 'no_such_module_of_mine' cannot be imported"),
         ({"id": "fakebatch/Single-v0"}, "cannot be made"),
         ({"id": "CartPole-v1", "keywords": {"sutton_reward": 1, "nonsense": 2}}, "cannot be made"),
-        ({"id": "fakebatch/Late-v0"}, "needs SAME_STEP"),
+        ({"id": "fakebatch/Late-v0"}, "cannot be made"),
         ({"id": "fakebatch/Line-v0", "keywords": {"rewrd": "x"}}, "did you mean 'reward'?"),
     ],
 )

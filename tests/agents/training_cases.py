@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import safetensors.torch
 
-from lidarena.agents import TrainingConfig, training
+from lidarena.agents import TrainingConfig, training_run
 from lidarena.base.yaml_config import check_config
 from tests.agents.fake_batch import ID
 
@@ -58,4 +58,4 @@ def press_ctrl_c(monkeypatch: pytest.MonkeyPatch, at_step: int, times: int = 1, 
         def close(self) -> None:
             pass
 
-    monkeypatch.setattr(training, "show_progress", lambda *_: Keyboard())
+    monkeypatch.setattr(training_run, "show_progress", lambda *_: Keyboard())

@@ -37,7 +37,7 @@ class GoalChoiceAgent:
         self._policy = GoalChoicePolicy(env, self._choose)
 
     def _choose(self, features: NDArray[Any]) -> int:
-        return int(self.learned.act(features))
+        return int(self.learned.act(features, {"action_mask": features[:, 0] > 0.5}))
 
     @property
     def finished(self) -> bool:

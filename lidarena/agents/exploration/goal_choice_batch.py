@@ -44,6 +44,10 @@ class GoalChoiceBatch(AsyncVectorEnv):
         worlds = zip(state["generators"], state["choices"], strict=True)
         self.set_attr("memory", [(words, choices[choices >= 0]) for words, choices in worlds])
 
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which candidates are there in every world, (worlds, CANDIDATES)."""
+        return np.stack(self.call("action_masks"))
+
 
 def _compile(keywords: dict[str, Any]) -> None:
     """Take a step in this process, so that what is compiled at first use is compiled once, not by every process."""

@@ -82,6 +82,7 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         while True:
             features, _, terminated, truncated = self._begin()
             if not (terminated or truncated):  # a world without a single choice teaches nothing
+                self._there = features[:, 0] > 0.5
                 return features, self._info()
 
     def _begin(self) -> tuple[NDArray[np.float32], float, bool, bool]:
@@ -98,7 +99,12 @@ class GoalChoiceEnv(gym.Env[NDArray[np.float32], Any]):
         self._choice = int(action)
         self._choices.append(int(action))
         features, reward, terminated, truncated = self._drive()
+        self._there = features[:, 0] > 0.5
         return features, reward, terminated, truncated, self._info()
+
+    def action_masks(self) -> NDArray[np.bool_]:
+        """Which candidates are there (CANDIDATES,), as sb3-contrib's MaskablePPO asks for it."""
+        return self._there
 
     @property
     def memory(self) -> tuple[NDArray[np.uint64], NDArray[np.int64]]:

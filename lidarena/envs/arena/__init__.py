@@ -21,4 +21,5 @@ FAMILY = Family(
     },
     measures="lidarena.evaluation.measures.arena:MEASURES",
     baselines="lidarena.baselines.arena",
+    agent_options=("observation", "action", "beams", "max_range"),
 )

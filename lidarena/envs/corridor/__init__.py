@@ -38,9 +38,13 @@ FAMILY = Family(
             "lidarena.envs.corridor:make_single", "lidarena.envs.corridor.central_env:BatchedCorridor", EPISODE_STEPS
         ),
         SHARED_ID: Registration(
-            "lidarena.envs.corridor:refuse_single", "lidarena.envs.corridor.shared_env:SharedCorridor", EPISODE_STEPS
+            "lidarena.envs.corridor:refuse_single",
+            "lidarena.envs.corridor.shared_env:SharedCorridor",
+            EPISODE_STEPS,
+            agent="lidarena.agents.corridor.shared_fleet_agent:SharedFleetAgent",
         ),
     },
     measures="lidarena.evaluation.measures.corridor:MEASURES",
     baselines="lidarena.baselines.corridor",
+    agent_options=("observation", "action", "neighbours", "beams", "lidar_range"),
 )

@@ -28,6 +28,7 @@ FAMILY = Family(
         "lidarena/GoalChoice-v0": Registration(
             "lidarena.agents.exploration.goal_choice_env:GoalChoiceEnv",
             "lidarena.agents.exploration.goal_choice_batch:GoalChoiceBatch",
+            agent="lidarena.agents.exploration.goal_choice_agent:GoalChoiceAgent",
         )
     },
     measures="lidarena.evaluation.measures.exploration:MEASURES",
