@@ -57,12 +57,14 @@ def check_options(learned: LearnedPolicy, env: Any, origin: str) -> None:
 def check_spaces(learned: LearnedPolicy, env: Any, origin: str) -> None:
     """Refuse an environment that shows something else or takes other actions than the one trained in.
 
+    Bounds of observations do not matter, since a network does not know them.
+
     Raises:
         PolicyFileError: It names both spaces.
     """
     for what, trained in (("observation", learned.observation_space), ("action", learned.action_space)):
         space = space_of(env, what)
-        if space != trained:
+        if not _alike(what, space, trained):
             before, here = _shown(trained), _shown(space)
             raise PolicyFileError(
                 f"{origin} was trained in {learned.env_id!r} with {what}s {before}, "
@@ -73,7 +75,17 @@ def check_spaces(learned: LearnedPolicy, env: Any, origin: str) -> None:
 def fits(learned: LearnedPolicy, env: Any) -> bool:
     """Whether an environment has the spaces that an agent was trained with."""
     trained = {"observation": learned.observation_space, "action": learned.action_space}
-    return all(bool(space_of(env, what) == space) for what, space in trained.items())
+    return all(_alike(what, space_of(env, what), space) for what, space in trained.items())
+
+
+def _alike(what: str, space: Any, trained: spaces.Space[Any]) -> bool:
+    """Whether a space is to a network as the one that it was trained with."""
+    if what == "observation" and isinstance(space, spaces.Dict) and isinstance(trained, spaces.Dict):
+        same = space.spaces.keys() == trained.spaces.keys()
+        return same and all(_alike(what, space[key], part) for key, part in trained.spaces.items())
+    if what == "observation" and isinstance(space, spaces.Box) and isinstance(trained, spaces.Box):
+        return space.shape == trained.shape and space.dtype == trained.dtype
+    return bool(space == trained)
 
 
 def space_of(env: Any, what: str) -> Any:

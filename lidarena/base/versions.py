@@ -4,7 +4,18 @@ import importlib.metadata
 import platform
 from collections.abc import Iterable
 
-LIBRARIES = ("lidarena", "gymnasium", "numba", "numpy", "pettingzoo", "pymunk", "scipy", "stable-baselines3", "torch")
+LIBRARIES = (
+    "lidarena",
+    "gymnasium",
+    "numba",
+    "numpy",
+    "pettingzoo",
+    "pymunk",
+    "sb3-contrib",
+    "scipy",
+    "stable-baselines3",
+    "torch",
+)
 """Those whose version can change a result."""
 
 

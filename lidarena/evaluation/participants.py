@@ -7,27 +7,24 @@ from typing import Any
 import gymnasium as gym
 
 import lidarena  # noqa: F401  registers the environments, also in a spawned worker
-from lidarena import baselines
-from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
+from lidarena import agents, baselines
 from lidarena.agents.shipped import resolve
 from lidarena.base.errors import ConfigError, LidarenaError, suggest
 from lidarena.base.import_names import import_for, import_named
 from lidarena.baselines import Policy
-from lidarena.envs.corridor import SHARED_ID
+from lidarena.envs.registration import Family, registration_of
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.evaluation.recording import Env
 
 TRUTH = "expose_truth"
 """Keyword of environments that tell an evaluation what no policy may see."""
-AGENT_KEYWORDS = ("observation", "reward", "action", "beams", "lidar_range", "neighbours")
-"""Keywords of the environments that change what an observation or an action means."""
 
 
 def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str | None = None) -> tuple[Env, Policy]:
     """Make an environment, with the truth exposed to the evaluation, and a policy to drive in it.
 
-    A trained agent brings along the `AGENT_KEYWORDS` that it was trained with, defaults included, in place of the
-    environment entry's: on another ``reward`` or ``observation`` its inputs would mean something else.
+    A trained agent brings along the keywords that say what an observation or action means to it, defaults included, in
+    place of the environment entry's.
 
     Args:
         env_entry: Which environment.
@@ -36,38 +33,32 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
 
     Raises:
         ConfigError: There is no such environment, keyword, baseline, option, module or folder.
-        PolicyFileError: The agent's files are torn or of another kind, or no such agent is shipped.
+        PolicyFileError: The agent's files are torn or of another kind, no such agent is shipped, or it was trained for
+            other environments.
     """
     check_policy(entry)
     keywords = dict(env_entry.keywords)
     agent = None
     if entry.path is not None:
-        from lidarena import agents  # imports torch, which only trained agents need
-
         agent = agents.load(entry.path)
-        own = {key: value for key, value in agent.env_keywords.items() if key in AGENT_KEYWORDS}
-        keywords = {key: value for key, value in keywords.items() if key not in AGENT_KEYWORDS} | own
+        names = _agent_keywords(agent.env_id)
+        own = {key: value for key, value in agent.env_keywords.items() if key in names}
+        keywords = {key: value for key, value in keywords.items() if key not in names} | own
     env = make_env(env_entry.id, keywords | entry.keywords, render_mode)
     try:
         if agent is None:
             return env, _make_untrained(entry, env)
-        if agent.env_id == GOAL_CHOICE_ID:
-            from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
-
-            return env, GoalChoiceAgent(env, agent)
-        if agent.env_id == SHARED_ID:
-            from lidarena.agents.corridor.shared_fleet_agent import SharedFleetAgent
-
-            return env, SharedFleetAgent(env, agent)
-        if agent.action_space != env.action_space:
-            raise ConfigError(
-                f"policy {entry.title!r} was trained on actions of {agent.action_space}, "
-                f"but environment {env_entry.label!r} takes {env.action_space}"
-            )
+        return env, agents.ready(agent, env, f"policy {entry.title!r}")
     except BaseException:
         env.close()
         raise
-    return env, agent
+
+
+def _agent_keywords(env_id: str) -> set[str]:
+    """Keywords of an agent's environments that change what an observation or an action means to it."""
+    registered = registration_of(env_id)
+    options = registered[0].agent_options if registered is not None else Family.agent_options
+    return {option.partition(".")[0] for option in options} | {"reward"}
 
 
 def make_env(env_id: str, keywords: Mapping[str, Any], render_mode: str | None = None) -> Env:

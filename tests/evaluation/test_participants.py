@@ -9,7 +9,7 @@ import pytest
 from gymnasium import spaces
 
 from lidarena import agents, baselines
-from lidarena.base.errors import ConfigError
+from lidarena.base.errors import ConfigError, PolicyFileError
 from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry
 from lidarena.evaluation.participants import check, make_env, make_participants
@@ -39,7 +39,8 @@ def test_a_baseline_is_made_by_name() -> None:
 
 def fake_agent(monkeypatch: pytest.MonkeyPatch, **attributes: Any) -> PolicyEntry:
     agent = SimpleNamespace(reset=lambda seed=None: None, act=lambda observation, info: 0, env_keywords={}, env_id="")
-    agent.action_space = spaces.Discrete(3)
+    agent.action_space, agent.ask_for_masks = spaces.Discrete(3), lambda env: None
+    agent.observation_space = make_env(CORRIDOR.id, {}).observation_space
     vars(agent).update(attributes)
     monkeypatch.setattr(agents, "load", lambda path: agent, raising=False)
     return PolicyEntry(name="trained", path=str(Path(__file__).parent))
@@ -60,7 +61,7 @@ def test_an_agent_trained_with_a_default_gets_the_default(monkeypatch: pytest.Mo
 
 def test_an_agent_of_other_actions_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     entry = fake_agent(monkeypatch, action_space=spaces.Discrete(5))
-    with pytest.raises(ConfigError, match=r"'trained' was trained on actions of Discrete\(5\).*takes Discrete\(3\)"):
+    with pytest.raises(PolicyFileError, match=r"'trained' was trained .*Discrete\(5\).* actions Discrete\(3\)"):
         make_participants(CORRIDOR, entry)
 
 
