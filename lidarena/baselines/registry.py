@@ -1,10 +1,12 @@
 """The baselines by name."""
 
 import inspect
+import warnings
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib import import_module
 from importlib.metadata import entry_points
+from types import ModuleType
 from typing import Any, TypeVar
 
 from lidarena.base.errors import ConfigError, suggest
@@ -65,9 +67,20 @@ def _load() -> None:
     if ENTRY_POINTS not in _loaded:
         _loaded.add(ENTRY_POINTS)
         for point in entry_points(group=ENTRY_POINTS):
-            found = point.load()
-            if callable(found) and point.name not in _entries:
-                register(point.name, getattr(found, "family", None))(found)
+            try:
+                _enter(point.name, point.load())
+            except Exception as error:  # a package of somebody else must not keep ours from working
+                package = getattr(point.dist, "name", "a package")
+                words = f"{package} tells of a baseline {point.name!r}, which is left out: {error}"
+                warnings.warn(words, RuntimeWarning, stacklevel=4)
+
+
+def _enter(name: str, found: Any) -> None:
+    """Make known what an entry point leads to: a policy's maker, or a module that has registered its own by now."""
+    if callable(found):
+        register(name, getattr(found, "family", None))(found)
+    elif not isinstance(found, ModuleType):
+        raise ConfigError(f"{found!r} is neither callable nor a module")
 
 
 def make(name: str, env: Any, **options: Any) -> Policy:

@@ -82,7 +82,7 @@ def _made(env_id: str, keywords: Mapping[str, Any]) -> Env:
         env: Env = gym.make(env_id, disable_env_checker=True, **keywords)
     except LidarenaError:
         raise
-    except (TypeError, ValueError, ImportError, gym.error.Error) as error:
+    except (TypeError, ValueError, AssertionError, ImportError, gym.error.Error) as error:
         raise ConfigError(f"environment {env_id!r} cannot be made: {_first_line(error)}") from error
     return env
 

@@ -161,7 +161,8 @@ def _legend(figure: "Figure", panels: Sequence["Axes"]) -> None:
     handles = {label: handle for handle, label in reversed(found)}
     labels = list(dict.fromkeys(label for _, label in found))
     width = figure.get_size_inches()[0]
-    columns = 9 if width > 12 else 5 if width > 7.5 else 3
+    lines = -(-len(labels) // (9 if width > 12 else 5 if width > 7.5 else 3))
+    columns = -(-len(labels) // max(lines, 1))
     where: dict[str, Any] = {"loc": "outside lower center", "ncols": columns, "fontsize": 8, "frameon": False}
     if labels:
         figure.legend(handles=[handles[label] for label in labels], labels=labels, **where)

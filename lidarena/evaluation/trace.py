@@ -29,17 +29,19 @@ class Walls:
         edges: x1, y1, x2, y2 of walls, shape (E, 4) [m].
         circles: x, y, radius of pillars, shape (C, 3) [m].
         label: In the legend.
+        filled: Whether pillars are shaded.
     """
 
     edges: Floats = field(default_factory=_no_rows(4))
     circles: Floats = field(default_factory=_no_rows(3))
     label: str = "true walls"
+    filled: bool = False
 
     @classmethod
-    def of(cls, env: Any, label: str = "true walls") -> "Walls":
+    def of(cls, env: Any, label: str = "true walls", filled: bool = False) -> "Walls":
         """Those of the ``floorplan`` of an environment; none if it has none."""
         plan = getattr(env.unwrapped, "floorplan", None)
-        return cls(label=label) if plan is None else cls(np.array(plan.edges), np.array(plan.circles), label)
+        return cls() if plan is None else cls(np.array(plan.edges), np.array(plan.circles), label, filled)
 
     def corners(self) -> Floats:
         """Points around everything, (n, 2) [m]."""
@@ -49,13 +51,17 @@ class Walls:
     def draw(self, axes: "Axes") -> None:
         """Draw the outlines."""
         from matplotlib.collections import LineCollection
+        from matplotlib.colors import to_rgb
         from matplotlib.patches import Circle
 
         lines = [((x1, y1), (x2, y2)) for x1, y1, x2, y2 in self.edges]
         axes.add_collection(LineCollection(lines, colors=VIOLET, linewidths=0.7, zorder=3))
         for x, y, radius in self.circles:
-            axes.add_patch(Circle((x, y), radius, fill=False, edgecolor=VIOLET, linewidth=0.7, zorder=3))
-        if len(self.edges) + len(self.circles):
+            shade = (*to_rgb(VIOLET), 0.25 if self.filled else 0.0)
+            axes.add_patch(Circle((x, y), radius, facecolor=shade, edgecolor=VIOLET, linewidth=0.7, zorder=3))
+        if self.filled and len(self.circles):
+            axes.scatter([], [], s=70, color=(*to_rgb(VIOLET), 0.25), edgecolor=VIOLET, label=self.label)
+        elif len(self.edges) + len(self.circles):
             axes.plot([], [], color=VIOLET, linewidth=0.9, label=self.label)
 
 
@@ -132,7 +138,7 @@ class RobotTrace:
         self.walls.draw(axes)
         self._draw_graph(axes)
         for path, colour, dashes, label in (
-            (self.true, BLUE, "-", "true path"),
+            (self.true, BLUE, "-", "true path" if len(self.estimated) else "path"),
             (self.estimated, VERMILION, (0, (4, 2)), "path as SLAM believes it"),
         ):
             if len(path):
@@ -140,7 +146,7 @@ class RobotTrace:
         path = self.true if len(self.true) else self.estimated
         axes.plot(*path[0], "o", color=GREEN, markeredgecolor="white", markersize=9, label="start", zorder=5)
         if len(self.goal):
-            axes.plot(*self.goal[0], "*", color=AMBER, markeredgecolor="black", markersize=14, label="goal", zorder=4.5)
+            axes.plot(*self.goal[0], "*", color=AMBER, markeredgecolor="black", markersize=14, label="goal", zorder=5.5)
         draw_end(axes, path[-1], self.crashed)
         explain_ends(axes)
 
@@ -179,10 +185,10 @@ class TeamTrace:
         self.walls.draw(axes)
         for robot, goal in enumerate(self.goals):
             path, colour = self.paths[:, robot], LINES[robot % len(LINES)][0]
-            label = ("path, a colour a robot", "start", "goal") if robot == 0 else (None, None, None)
+            label = ("path, one colour per robot", "start", "goal") if robot == 0 else (None, None, None)
             axes.plot(*path.T, color=colour, linewidth=1.4, label=label[0], zorder=4)
             axes.plot(*path[0], "o", color=colour, markeredgecolor="white", markersize=8, label=label[1], zorder=5)
-            axes.plot(*goal, "*", color=colour, markeredgecolor="black", markersize=14, label=label[2], zorder=4.5)
+            axes.plot(*goal, "*", color=colour, markeredgecolor="black", markersize=14, label=label[2], zorder=5.5)
             draw_end(axes, path[-1], bool(self.collided[robot]))
         explain_ends(axes)
 

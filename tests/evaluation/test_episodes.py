@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from lidarena import baselines
+from lidarena.base.errors import ConfigError
 from lidarena.evaluation.episodes import policy_seed, run_episode, without_truth
 from lidarena.evaluation.measures.exploration import MEASURES
 from lidarena.evaluation.participants import make_env
@@ -113,10 +114,25 @@ def test_time_runs_out(keywords: dict[str, int], steps: int) -> None:
     ("patience", "max_steps", "ending"),
     [(5.0, None, "out of patience"), (None, 40, "out of time"), (9.0, 40, "out of time")],
 )
-def test_patience_that_runs_out_is_told_from_time(patience: float | None, max_steps: int | None, ending: str) -> None:
-    env = make_env("lidarena/Env1-v0", {"patience": patience, "max_episode_steps": 400, "slam": "truth"})
+@pytest.mark.parametrize("most", [400, None, -1])
+def test_patience_that_runs_out_is_told_from_time(
+    patience: float | None, max_steps: int | None, ending: str, most: int | None
+) -> None:
+    env = make_env("lidarena/Env1-v0", {"patience": patience, "max_episode_steps": most, "slam": "truth"})
     episode = run_episode(env, Turner(env), seed=0, max_steps=max_steps)
     assert episode.ending == ending and episode.measures["steps"] < 400
+
+
+@pytest.mark.parametrize(("most", "steps"), [(None, 120), (30, 30), (-1, 200)])
+def test_no_limit_given_is_the_ids_own_and_minus_one_is_never(most: int | None, steps: int) -> None:
+    env = make_env(CORRIDOR, {"max_episode_steps": most})
+    assert run_episode(env, Turner(env), seed=0, max_steps=200).measures["steps"] == steps
+
+
+@pytest.mark.parametrize("most", [0, -2, 1.5, "many"])
+def test_a_limit_that_is_none_is_refused_in_one_sentence(most: object) -> None:
+    with pytest.raises(ConfigError, match=r"^environment .* cannot be made: .*max_episode_steps|^max_episode_steps"):
+        make_env("lidarena/Env1-v0", {"max_episode_steps": most})
 
 
 def test_steps_can_be_limited() -> None:

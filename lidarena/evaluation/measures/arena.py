@@ -38,7 +38,7 @@ class ArenaMeasures(FamilyMeasures):
     def picture(self, recording: Recording) -> RobotTrace:
         """The path among the obstacles."""
         goal = np.array(recording.info["goal"], np.float64).reshape(1, 2)
-        walls, crashed = Walls.of(recording.env, "obstacles"), recording.ending == "collision"
+        walls, crashed = Walls.of(recording.env, "obstacles", filled=True), recording.ending == "collision"
         return RobotTrace(recording.positions("truth.pose"), walls=walls, goal=goal, crashed=crashed)
 
     def describe(self, values: Mapping[str, float]) -> str:
