@@ -3,12 +3,15 @@
 import sys
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from functools import wraps
 from importlib import import_module
 from importlib.abc import InspectLoader, MetaPathFinder
 from importlib.machinery import ModuleSpec
 from importlib.util import find_spec
 from types import CodeType, ModuleType
-from typing import Any
+from typing import Any, TypeVar, cast
+
+Function = TypeVar("Function", bound=Callable[..., Any])
 
 _INTO_A_FOLDER = {
     "agents.corridor": "shared_fleet_agent",
@@ -93,6 +96,26 @@ def renamed(module: str, names: Mapping[str, str]) -> Callable[[str], Any]:
         return getattr(import_module(module), names[name])
 
     return look_up
+
+
+def takes_old_keywords(**names: str) -> Callable[[Function], Function]:
+    """Return a decorator for a function some of whose keywords were called otherwise earlier.
+
+    Args:
+        **names: The keywords of now by the earlier ones.
+    """
+
+    def decorate(function: Function) -> Function:
+        @wraps(function)
+        def call(*values: Any, **keywords: Any) -> Any:
+            for old in names.keys() & keywords.keys():
+                _warn(f"keyword {old!r} of {function.__name__}", repr(names[old]))
+                keywords[names[old]] = keywords.pop(old)
+            return function(*values, **keywords)
+
+        return cast(Function, call)
+
+    return decorate
 
 
 def keep_old_names() -> None:

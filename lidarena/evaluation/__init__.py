@@ -16,6 +16,7 @@ from lidarena.evaluation.progress_curve import ProgressCurve
 from lidarena.evaluation.recording import Recording
 from lidarena.evaluation.results import Metric, Row
 from lidarena.evaluation.runner import EpisodeError
+from lidarena.evaluation.trace import RobotTrace, TeamTrace, Walls
 
 __all__ = [
     "Comparison",
@@ -28,7 +29,10 @@ __all__ = [
     "Picture",
     "ProgressCurve",
     "Recording",
+    "RobotTrace",
     "Row",
+    "TeamTrace",
+    "Walls",
     "compare",
     "run_episode",
 ]

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lidarena.base.old_names import takes_old_keywords
 from lidarena.baselines import Policy
 from lidarena.envs.infos import Info
 from lidarena.envs.registration import owner_of
@@ -51,6 +52,7 @@ def without_truth(info: Mapping[str, Any]) -> Info:
     return Info({key: value for key, value in info.items() if key != "truth"})
 
 
+@takes_old_keywords(keep_trace="keep_picture", film="record")
 def run_episode(
     env: Env,
     policy: Policy,

@@ -65,7 +65,8 @@ with warnings.catch_warnings(record=True) as told:
     print(sorted(name for name in baselines.names() if name.startswith("stranger")))
 print(*sorted(str(one.message) for one in told), sep="\\n")
 arena, maze = gym.make("lidarena/Arena-v0", arena="yang"), gym.make("lidarena/Env1-v0")
-print(baselines.make("stranger_left", arena, sharply=True).act(None, {}), type(baselines.make("frontier", maze)).__name__)
+sharp, frontier = baselines.make("stranger_left", arena, sharply=True), baselines.make("frontier", maze)
+print(sharp.act(None, {}), type(frontier).__name__)
 for env, options in ((arena, {"sharpl": True}), (maze, {})):
     try:
         baselines.make("stranger_left", env, **options)

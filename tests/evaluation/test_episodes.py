@@ -185,3 +185,10 @@ def test_a_whole_map_is_a_success_where_no_completeness_ends_an_episode() -> Non
     assert whole.measures["completeness"] > 0.99 and whole.measures["success"] == 1.0
     part = run_episode(env, baselines.make("frontier", env), 2, max_steps=30)
     assert part.measures["completeness"] < 0.99 and part.measures["success"] == 0.0
+
+
+def test_earlier_keywords_work_with_a_warning() -> None:
+    env = make_env(CORRIDOR, {})
+    with pytest.warns(DeprecationWarning, match="keyword 'keep_trace' of run_episode is now 'keep_picture'"):
+        episode = run_episode(env, Driver(env), seed=0, keep_trace=True)  # type: ignore[call-arg]
+    assert isinstance(episode.picture, RobotTrace)
