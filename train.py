@@ -12,10 +12,12 @@ from lidarena import agents
 from lidarena.agents.learner_config import PPOConfig
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.base.errors import LidarenaError
+from lidarena.base.terminal import make_output_printable
 
 
 def main(arguments: list[str] | None = None) -> int:
-    """Run a training; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
+    """Run a training; return 0, 2 for a refusal, 130 after Ctrl-C."""
+    make_output_printable()
     parser = _parser()
     options = parser.parse_args(arguments)
     if not options.config and not options.resume:
@@ -29,9 +31,10 @@ def main(arguments: list[str] | None = None) -> int:
     except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
-    except OSError as error:
-        print(f"the training has stopped: {error}", file=sys.stderr)
-        return 1
+    except OSError as error:  # of TensorBoard's writer; a full disk raises without a name
+        place = repr(error.filename or options.resume or config.out)
+        print(f"the training has stopped: {place} cannot be written: {error.strerror}", file=sys.stderr)
+        return 2
     except agents.TrainingStopped as stopped:
         print(stopped, file=sys.stderr)
         return 130

@@ -93,8 +93,8 @@ def test_trouble_with_the_disk(file: Path, monkeypatch: pytest.MonkeyPatch, caps
         raise OSError(28, "No space left on device")
 
     monkeypatch.setattr("lidarena.agents.checkpoint.write_folder", full)
-    assert program.main(["--config", str(file)]) == 1
-    assert "No space left on device" in capsys.readouterr().err
+    assert program.main(["--config", str(file)]) == 2
+    assert "cannot be written: No space left on device" in capsys.readouterr().err
 
 
 def test_the_program_itself(tmp_path: Path) -> None:

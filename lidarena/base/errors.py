@@ -62,6 +62,7 @@ def suggest(word: str, allowed: Iterable[str]) -> str:
     """
     names = sorted(allowed)
     by_lower = {name.lower(): name for name in names}
-    near = get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)
-    hint = f"; did you mean {by_lower[near[0]]!r}?" if near else ";"
+    near = get_close_matches(word, names, n=1, cutoff=0.6)
+    near = near or [by_lower[name] for name in get_close_matches(word.lower(), by_lower, n=1, cutoff=0.6)]
+    hint = f"; did you mean {near[0]!r}?" if near else ";"
     return f"{hint} Allowed: {', '.join(names)}"

@@ -68,7 +68,7 @@ def test_an_environment_of_no_family_is_measured_by_what_it_tells() -> None:
     ("path", "sentence"),
     [
         ("no_such_module:MEASURES", "there is no module 'no_such_module'"),
-        (f"{stranger.HERE}:MEASURE", "did you mean 'MEASURES'"),
+        (f"{stranger.HERE}:MEASURSE", "did you mean 'MEASURES'"),
         (f"{stranger.HERE}:DEPTH", "are a Measure, where a FamilyMeasures is needed"),
         ("tests.evaluation.measures.torn:MEASURES", "cannot be imported"),
     ],
