@@ -145,7 +145,7 @@ class BatchVecEnv(VecEnv):
     def _attribute(self, name: str) -> Any:
         """An attribute of the batch, or else of the single environments that it is made of."""
         if not hasattr(self.env, name) and isinstance(self.env.unwrapped, SyncVectorEnv):
-            return self.env.unwrapped.get_attr(name)
+            return [env.get_wrapper_attr(name) for env in self.env.unwrapped.envs]
         return getattr(self.env, name)
 
     def set_attr(self, attr_name: str, value: Any, indices: int | Iterable[int] | None = None) -> None:

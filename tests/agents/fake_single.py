@@ -16,11 +16,11 @@ class WalkEnv(gym.Env[NDArray[np.float32], Any]):
         self.action_space = spaces.Discrete(2, start=start)
         self.position = 0.5
         if masked:
-            self.action_masks = lambda: np.array([False, True])
+            self.action_masks = lambda: np.array([self.begun, True])
 
     def reset(self, *, seed: int | None = None, options: Any = None) -> tuple[NDArray[np.float32], dict[str, Any]]:
         super().reset(seed=seed)
-        self.position = 0.5 + 0.1 * self.np_random.normal()
+        self.position, self.begun = 0.5 + 0.1 * self.np_random.normal(), False
         return self._observe(), {}
 
     def step(self, action: Any) -> tuple[NDArray[np.float32], float, bool, bool, dict[str, Any]]:

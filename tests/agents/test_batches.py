@@ -66,7 +66,9 @@ def test_masks_of_single_worlds_reach_the_learner(tmp_path: Path) -> None:
     batch.reset()
     assert np.array_equal(batch.env_method("action_masks"), [[False, True]] * 2)
     assert batch.has_attr("action_masks") and not batch.has_attr("something_else")
-    policy = load(train(config, progress=False), make_batch(config.env, 1).env.envs[0])  # type: ignore[attr-defined]
+    env = make_batch(config.env, 1).env.envs[0]  # type: ignore[attr-defined]
+    env.reset()
+    policy = load(train(config, progress=False), env)
     assert policy.act(np.zeros(2, np.float32), {}) == 1
 
 

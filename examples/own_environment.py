@@ -1,0 +1,47 @@
+"""An environment of one's own trains like the built-in ones, here with PPO that knows which actions are allowed.
+
+python examples/own_environment.py        the same from YAML: env: {id: "own_environment:own/Walk-v0"}
+"""
+
+import tempfile
+
+import gymnasium as gym
+import numpy as np
+
+from lidarena import agents
+from lidarena.base.yaml_config import check_config
+
+
+class Walk(gym.Env):
+    """Walk right from 0 to 10; at 0 there is no way back."""
+
+    observation_space, action_space = gym.spaces.Box(0, 10, (1,), np.float32), gym.spaces.Discrete(2)
+
+    def reset(self, *, seed=None, options=None):
+        super().reset(seed=seed)
+        self.place = 0
+        return np.array([0], np.float32), {}
+
+    def step(self, action):
+        self.place += 1 if action == 1 else -1
+        success = self.place == 10
+        return np.array([self.place], np.float32), float(success) - 0.1, success, False, {"success": success}
+
+    def action_masks(self):
+        return np.array([self.place > 0, True])
+
+
+gym.register("own/Walk-v0", entry_point=Walk, max_episode_steps=40)
+
+if __name__ == "__main__":
+    settings = {"env": "own/Walk-v0", "algorithm": "MaskablePPO", "num_envs": 4, "total_steps": 4096}
+    settings |= {"maskable_ppo": {"n_steps": 64}, "out": f"{tempfile.mkdtemp()}/walk"}
+    folder = agents.train(check_config(settings, agents.TrainingConfig), progress=False)
+    env = gym.make("own/Walk-v0")
+    policy = agents.load(folder, env)
+    observation, info = env.reset(seed=0)
+    steps, success = 0, False
+    while not success:
+        observation, _, success, _, info = env.step(policy.act(observation, info))
+        steps += 1
+    print(f"the trained agent needs {steps} steps")
