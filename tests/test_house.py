@@ -54,3 +54,8 @@ def test_files_and_functions_can_be_held_in_the_head() -> None:
 
 def test_no_room_is_named_after_nothing() -> None:
     assert not {p.stem for p in SOURCES} & {"utils", "util", "helpers", "helper", "common", "misc", "tools"}
+
+
+def test_kernels_are_compiled_in_one_way() -> None:
+    """So that where their cache goes is decided in one place."""
+    assert [p for p in SOURCES if "njit" in p.read_text()] == [PACKAGE / "base" / "jit.py"]

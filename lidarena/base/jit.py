@@ -7,11 +7,17 @@ None of them lets the compiler reorder sums (``fastmath``): the process that com
 from the cache would then differ in the last bit.
 """
 
+import os
+import tempfile
+import warnings
 from collections.abc import Callable
+from functools import cache
+from getpass import getuser
+from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import njit, types
+from numba import config, njit, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numpy.typing import NDArray
@@ -26,26 +32,68 @@ _LEAF: dict[str, Any] = {**_KERNEL, "_nrt": False}
 
 def kernel(function: Callable[..., Result]) -> Callable[..., Result]:
     """Compile a function that allocates arrays; it releases the interpreter lock and is cached on disk."""
-    compiled: Callable[..., Result] = njit(**_KERNEL)(function)
-    return compiled
+    return _compiled(function, _KERNEL)
 
 
 def leaf(function: Callable[..., Result]) -> Callable[..., Result]:
     """Compile a function that allocates nothing, and so need not count references."""
-    compiled: Callable[..., Result] = njit(**_LEAF)(function)
-    return compiled
+    return _compiled(function, _LEAF)
 
 
 def inlined(function: Callable[..., Result]) -> Callable[..., Result]:
     """Compile a small ``leaf`` into each of its callers."""
-    compiled: Callable[..., Result] = njit(**_LEAF, forceinline=True)(function)
-    return compiled
+    return _compiled(function, {**_LEAF, "forceinline": True})
 
 
 def merged(function: Callable[..., Result]) -> Callable[..., Result]:
     """Compile a large ``leaf`` only as a part of its callers, not by itself and then again with each of them."""
-    compiled: Callable[..., Result] = njit(**_LEAF, inline="always")(function)
-    return compiled
+    return _compiled(function, {**_LEAF, "inline": "always"})
+
+
+def _compiled(function: Callable[..., Result], options: dict[str, Any]) -> Callable[..., Result]:
+    """Compile, with numba's cache beside the source, else in the user's folder, else in a temporary one.
+
+    Without the last, nothing could be imported where the package and the home cannot be written to.
+    """
+
+    def decorate(**more: Any) -> Callable[..., Result]:
+        compiled: Callable[..., Result] = njit(**options | more)(function)
+        return compiled
+
+    try:
+        return decorate()
+    except RuntimeError as error:
+        if "no locator available" not in str(error):
+            raise
+    return decorate() if _use_temporary_cache() else decorate(cache=False)
+
+
+@cache
+def _use_temporary_cache() -> bool:
+    """Let numba, here and in processes started from here, keep its cache in a temporary folder of this user's own."""
+    folder = Path(tempfile.gettempdir()) / f"lidarena-kernels-{getuser()}"
+    usable = _is_own(folder)
+    warnings.warn(
+        "compiled kernels can be kept neither beside the package nor in the home folder; "
+        + (f"they are kept in {folder}" if usable else "every process compiles them anew, which takes a minute")
+        + ". Set NUMBA_CACHE_DIR to a folder that can be written to",
+        stacklevel=2,
+    )
+    if usable:
+        os.environ["NUMBA_CACHE_DIR"] = str(folder)
+        setattr(config, "CACHE_DIR", str(folder))  # noqa: B010 - numba declares none of its settings
+    return usable
+
+
+def _is_own(folder: Path) -> bool:
+    """Make a folder that nobody else can write to; False where it cannot be made, or is somebody else's."""
+    try:
+        folder.mkdir(mode=0o700, exist_ok=True)
+        found = folder.stat()
+        tempfile.TemporaryFile(dir=folder).close()
+    except OSError:
+        return False
+    return not hasattr(os, "getuid") or (found.st_uid == os.getuid() and not found.st_mode & 0o022)
 
 
 def _take_next(context: Any, counter: Any) -> Any:

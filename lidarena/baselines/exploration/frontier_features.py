@@ -5,9 +5,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.base.jit import kernel
 from lidarena.baselines.exploration.driving import Terrain
 from lidarena.planning.grid.frontiers import Frontier
 
@@ -131,7 +131,7 @@ def _unknown_share(terrain: Terrain, cell: tuple[int, int]) -> float:
     return float((window[disc] < 0).mean())
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _first_leg(lengths: NDArray[np.float64], row: int, column: int, length: float) -> tuple[int, int]:
     """The cell that lies ``length`` on the way to a cell, found by going back along falling ``lengths``."""
     while lengths[row, column] > length:

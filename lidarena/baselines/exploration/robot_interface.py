@@ -6,10 +6,10 @@ from typing import Any
 
 import gymnasium as gym
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.jit import kernel
 from lidarena.envs.exploration.observations import SECTORS
 from lidarena.planning.grid.steering import Commands
 from lidarena.world.floorplan import START_CLEARANCE
@@ -104,7 +104,7 @@ def _decision_period(env: Any) -> float:
     return float(period)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _touches(scan: NDArray[np.float64], angles: NDArray[np.float64], dx: float, dy: float) -> bool:
     """Whether (dx, dy) lies too near to what a beam of ``scan`` (n,) at ``angles`` (n,) hit, and nearer than before."""
     for i in range(scan.shape[0]):

@@ -14,10 +14,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.jit import kernel
 
 _FREE = 0  # only a cell that is surely free carries the flood, as in explore_lite
 
@@ -43,7 +43,7 @@ class Frontier:
     goal: tuple[int, int]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _nearest_free(grid: NDArray[np.int8], row: int, col: int) -> tuple[int, int]:
     """The free cell with the fewest 4-neighbour steps from (row, col), through anything; (-1, -1) if none is free."""
     rows, cols = grid.shape
@@ -66,7 +66,7 @@ def _nearest_free(grid: NDArray[np.int8], row: int, col: int) -> tuple[int, int]
     return -1, -1
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _is_frontier(grid: NDArray[np.int8], row: int, col: int) -> bool:
     rows, cols = grid.shape
     if grid[row, col] >= 0:
@@ -79,7 +79,7 @@ def _is_frontier(grid: NDArray[np.int8], row: int, col: int) -> bool:
     )
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _grow(
     grid: NDArray[np.int8], taken: NDArray[np.bool_], cells: NDArray[np.int32], first: int, row: int, col: int
 ) -> int:
@@ -100,7 +100,7 @@ def _grow(
     return tail
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _flood(
     grid: NDArray[np.int8], row: int, col: int
 ) -> tuple[NDArray[np.bool_], NDArray[np.int32], NDArray[np.int64]]:
@@ -137,7 +137,7 @@ def _flood(
     return seen, cells[: ends[count]].copy(), ends[: count + 1].copy()
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _measure(cells: NDArray[np.int32], row: int, col: int) -> tuple[float, float, float]:
     """Distance from (row, col) to the nearest of ``cells`` (n, 2), and their mean row and column."""
     nearest, rows, cols = np.inf, 0.0, 0.0
@@ -149,7 +149,7 @@ def _measure(cells: NDArray[np.int32], row: int, col: int) -> tuple[float, float
     return math.sqrt(nearest), rows / cells.shape[0], cols / cells.shape[0]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def nearest_cell(mask: NDArray[np.bool_], row: float, col: float) -> tuple[int, int]:
     """Return the cell of ``mask`` nearest to a point in straight distance, the first in raster order among equals.
 

@@ -7,10 +7,10 @@ a start inside a blocked cell is allowed, and a cost of 1 everywhere gives lengt
 import math
 
 import numpy as np
-from numba import njit
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.jit import kernel
 from lidarena.planning.grid.heap import pop, push
 
 # the four straight steps first, so that the 4-connected search takes a prefix
@@ -18,7 +18,7 @@ _STEPS = np.array([(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), 
 _SQRT2 = math.sqrt(2.0)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _estimate(rows: int, cols: int, diagonal: bool) -> float:
     """Length in cells of the shortest way over an empty grid: octile, or Manhattan without diagonals."""
     rows = abs(rows)
@@ -28,7 +28,7 @@ def _estimate(rows: int, cols: int, diagonal: bool) -> float:
     return max(rows, cols) + (_SQRT2 - 1.0) * min(rows, cols)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _search(
     cost: NDArray[np.float64], start: int, goal: int, diagonal: bool, cheapest: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
@@ -73,7 +73,7 @@ def _search(
     return parent, reached
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _trace(parent: NDArray[np.int64], goal: int, cols: int) -> NDArray[np.int64]:
     n = 1
     cell = goal

@@ -10,11 +10,12 @@ Equal keys come out in an order that depends on the pushes alone, so a search is
 """
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.base.jit import kernel
 
-@njit(cache=True, nogil=True)
+
+@kernel
 def _rise(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], i: int) -> None:
     item = heap[i]
     while i > 0:
@@ -28,7 +29,7 @@ def _rise(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.fl
     where[item] = i
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _sink(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], size: int) -> None:
     item = heap[0]
     i = 0
@@ -45,7 +46,7 @@ def _sink(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.fl
     where[item] = i
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def push(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], size: int, item: int) -> int:
     """Insert ``item``, or move it up after its key has become smaller.
 
@@ -67,7 +68,7 @@ def push(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.flo
     return size
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def pop(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], size: int) -> int:
     """Take the item with the smallest key out; the heap is then one smaller and must not have been empty.
 

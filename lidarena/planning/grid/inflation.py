@@ -9,10 +9,10 @@ from dataclasses import dataclass
 from typing import Literal, get_args
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.jit import kernel
 
 Decay = Literal["exponential", "linear"]
 
@@ -59,7 +59,7 @@ class Inflation:
             raise ConfigError(f"occupied_from = {self.occupied_from}, allowed is 1 .. 100")
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _distance(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.float32]:
     """Distance in cells of each cell of (rows, cols) to the nearest occupied one, at most ``reach`` + 1.
 
@@ -112,7 +112,7 @@ def clearance(
     return result
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _costs(
     occupancy: NDArray[np.int8],
     distance: NDArray[np.float32],

@@ -10,9 +10,9 @@ import math
 from dataclasses import dataclass, field
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from lidarena.base.jit import kernel
 from lidarena.planning.grid.steering import Commands, loiter_gap, move, steer, tightest
 from lidarena.planning.grid.surroundings import Surroundings, gap_at, line_is_free
 
@@ -21,7 +21,7 @@ _TOLERANCE = 0.03  # so much less clearance than planned is no reason to plan an
 _SHORTEST_LOOK = 0.2  # nearer to the robot a path is not checked (m)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _nearest_point(path: NDArray[np.float64], position: NDArray[np.float64]) -> int:
     nearest, best = 0, np.inf
     for i in range(path.shape[0]):
@@ -31,7 +31,7 @@ def _nearest_point(path: NDArray[np.float64], position: NDArray[np.float64]) -> 
     return nearest
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def lookahead_point(
     path: NDArray[np.float64],
     position: NDArray[np.float64],
@@ -196,7 +196,7 @@ class PathFollower:
         return float(loiter_gap(around.gap, around.closed, around.frame, pose, velocity))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _is_blocked(
     path: NDArray[np.float64],
     position: NDArray[np.float64],
@@ -231,7 +231,7 @@ def blocked_ahead(path: NDArray[np.float64], pose: NDArray[np.float64], around: 
     return bool(_is_blocked(path, at, around.gap, around.closed, around.frame, margin))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _predict(pose: NDArray[np.float64], moves: NDArray[np.float64], sequence: NDArray[np.int64]) -> NDArray[np.float64]:
     here = pose.copy()
     poses = np.empty((sequence.shape[0], 3))

@@ -13,10 +13,10 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.jit import kernel
 from lidarena.planning.grid.heap import pop, push
 from lidarena.planning.grid.surroundings import Surroundings, gap_at
 
@@ -65,7 +65,7 @@ class Commands:
         return cls(rows, period, moves, np.maximum(1, np.round(1.0 / per_edge)).astype(np.int64))
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def move(pose: NDArray[np.float64], step: NDArray[np.float64]) -> None:
     """Drive ``pose`` (3,) by ``step`` (3,) given in its own frame, in place; the heading is not wrapped."""
     cosine, sine = math.cos(pose[2]), math.sin(pose[2])
@@ -74,7 +74,7 @@ def move(pose: NDArray[np.float64], step: NDArray[np.float64]) -> None:
     pose[2] += step[2]
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def tightest(
     gap: NDArray[np.float32],
     closed: NDArray[np.bool_],
@@ -104,7 +104,7 @@ def tightest(
     return float(least)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def loiter_gap(
     gap: NDArray[np.float32],
     closed: NDArray[np.bool_],
@@ -131,7 +131,7 @@ def loiter_gap(
     return float(least)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _can_loiter(
     gap: NDArray[np.float32],
     closed: NDArray[np.bool_],
@@ -147,7 +147,7 @@ def _can_loiter(
     return False
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _ahead(
     pose: NDArray[np.float64], target: NDArray[np.float64], reach: float, velocities: NDArray[np.float64]
 ) -> float:
@@ -164,7 +164,7 @@ def _ahead(
     return seconds
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _drive_edge(
     gap: NDArray[np.float32],
     closed: NDArray[np.bool_],
@@ -189,7 +189,7 @@ def _drive_edge(
     return cost
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _bin(pose: NDArray[np.float64], centre: NDArray[np.float64], side: int, headings: int) -> int:
     """The bin of ``pose`` in a square of ``side`` bins around ``centre`` with ``headings`` headings; -1 outside."""
     col = math.floor((pose[0] - centre[0]) / _BIN) + side // 2
@@ -200,7 +200,7 @@ def _bin(pose: NDArray[np.float64], centre: NDArray[np.float64], side: int, head
     return int((row * side + col) * headings + turn)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def search_commands(
     gap: NDArray[np.float32],
     closed: NDArray[np.bool_],
@@ -272,7 +272,7 @@ def search_commands(
     return np.empty(0, np.int64)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def _unroll(before: NDArray[np.int64], repeats: NDArray[np.int64], node: int) -> NDArray[np.int64]:
     n = 0
     at = node

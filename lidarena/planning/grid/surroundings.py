@@ -5,8 +5,9 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
+
+from lidarena.base.jit import kernel
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Surroundings:
         return np.array([self.origin[0], self.origin[1], self.resolution])
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def gap_at(
     gap: NDArray[np.float32], closed: NDArray[np.bool_], frame: NDArray[np.float64], x: float, y: float
 ) -> float:
@@ -73,7 +74,7 @@ def gap_at(
     return float((1.0 - v) * low + v * high)
 
 
-@njit(cache=True, nogil=True)
+@kernel
 def line_is_free(
     gap: NDArray[np.float32],
     closed: NDArray[np.bool_],
