@@ -161,9 +161,11 @@ def _explorer(policy: str, id_: str, steps: int, **keywords: Any) -> Callable[[]
 _SMALL = {"max_episode_steps": 40}
 CASES: dict[str, Callable[[], str]] = {
     "exploration, da_slam": _exploration("Env1-v0", 60, 1),
-    "exploration, d_optimality": _exploration("Env2-v0", 60, 2, reward="d_optimality", action="continuous"),
+    "exploration, d_optimality": _exploration(
+        "Env2-v0", 60, 2, reward="d_optimality", action="continuous", observation="da_slam_entropy"
+    ),
     "exploration, combined, map": _exploration("Env3-v0", 60, 3, reward="combined", observation="map"),
-    "exploration, compass, truth": _exploration("Env4-v0", 80, 4, observation="compass", slam="truth"),
+    "exploration, compass, truth": _exploration("Env4-v0", 80, 4, observation="frontier_histogram", slam="truth"),
     "exploration, sectors, maze": _exploration(
         "Exploration-v0", 60, 5, map="maze:7", observation="sectors", start="random", particles=10
     ),

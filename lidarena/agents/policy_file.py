@@ -22,6 +22,7 @@ from lidarena.base.errors import PolicyFileError
 from lidarena.base.files import write_bytes, write_text
 from lidarena.base.versions import library_versions
 from lidarena.base.yaml_config import ConfigModel
+from lidarena.envs.registration import keywords_of_version_0_1
 
 FORMAT = "lidarena-policy"
 VERSION = 2
@@ -131,7 +132,10 @@ def read_policy(path: str | Path, deterministic: bool = True) -> LearnedPolicy:
         normalizer = ObservationNormalizer.from_tensors(statistics, space) if statistics else None
     except (SafetensorError, ValueError) as error:
         raise PolicyFileError(f"{str(weights_file)!r} does not fit {card_file.name}: {error}") from None
-    return LearnedPolicy(network, card.env.id, dict(card.env.keywords), dict(card.training), deterministic, normalizer)
+    keywords = dict(card.env.keywords)
+    if card.version == 1:
+        keywords = keywords_of_version_0_1(card.env.id, keywords)
+    return LearnedPolicy(network, card.env.id, keywords, dict(card.training), deterministic, normalizer)
 
 
 def _find(path: Path) -> tuple[Path, Path]:

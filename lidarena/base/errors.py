@@ -31,6 +31,14 @@ class KeywordError(ConfigError, TypeError):
     """A keyword that there is not: a ``TypeError`` too, as programs expect that probe what a function takes."""
 
 
+class RewardError(LidarenaError):
+    """What a reward function gave is no finite number."""
+
+
+class ObservationError(LidarenaError):
+    """What an observer of one's own gave is not in the space that it told."""
+
+
 class PolicyFileError(LidarenaError):
     """A policy file that is torn, of another environment, or not of this format."""
 

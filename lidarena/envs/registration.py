@@ -11,6 +11,7 @@ from typing import Any
 import gymnasium as gym
 
 from lidarena.base.errors import ConfigError, suggest
+from lidarena.base.import_names import import_named
 
 BUILT_IN = ("exploration", "arena", "corridor")
 """Packages of ``lidarena.envs`` that hold a ``FAMILY``."""
@@ -49,6 +50,8 @@ class Family:
         baselines: Module that registers its baselines when it is imported; None if there are none.
         agent_options: What in the ``options`` of its environments says what an observation or an action means to an
             agent, such as ``"observation"``, with dots where it is inside of another: ``"lidar.beams"``.
+        keywords_of_0_1: ``"module:function"`` that turns the keywords of a policy file or run of version 0.1 into those
+            of today; None if nothing has changed.
     """
 
     name: str
@@ -56,6 +59,7 @@ class Family:
     measures: str | None = None
     baselines: str | None = None
     agent_options: tuple[str, ...] = ("observation", "action")
+    keywords_of_0_1: str | None = None
 
 
 _families: dict[str, Family] = {}
@@ -111,6 +115,20 @@ def registration_of(env_id: str) -> tuple[Family, Registration] | None:
         if name in family.ids:
             return family, family.ids[name]
     return None
+
+
+def keywords_of_version_0_1(env_id: str, keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return the keywords with which version 0.1 made an environment so that they mean today what they meant then.
+
+    Args:
+        env_id: Gymnasium's id.
+        keywords: As a policy file or run folder of version 0.1 has them.
+    """
+    found = registration_of(env_id)
+    if found is None or found[0].keywords_of_0_1 is None:
+        return dict(keywords)
+    modern: dict[str, Any] = import_named(found[0].keywords_of_0_1, f"family {found[0].name!r}")(keywords)
+    return modern
 
 
 def family_of(env: Any) -> str | None:

@@ -58,7 +58,7 @@ def _agent_keywords(env_id: str) -> set[str]:
     """Keywords of an agent's environments that change what an observation or an action means to it."""
     registered = registration_of(env_id)
     options = registered[0].agent_options if registered is not None else Family.agent_options
-    return {option.partition(".")[0] for option in options} | {"reward"}
+    return {option.partition(".")[0] for option in options}
 
 
 def make_env(env_id: str, keywords: Mapping[str, Any], render_mode: str | None = None) -> Env:

@@ -97,7 +97,7 @@ def test_an_agent_that_was_told_other_features_is_refused_in_one_sentence() -> N
 
 def test_the_compass_agent_explores_a_world_that_it_was_not_trained_in() -> None:
     policy = agents.load("pretrained:compass")
-    env = gym.make("lidarena/Env2-v0", observation="compass", max_episode_steps=None)
+    env = gym.make("lidarena/Env2-v0", observation="frontier_histogram", max_episode_steps=None)
     observation, info = env.reset(seed=4)
     policy.reset(seed=0)
     ended = False

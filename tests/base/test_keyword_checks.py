@@ -56,6 +56,6 @@ def test_numpys_numbers_are_numbers(make: Any) -> None:
 
 
 def test_numpys_numbers_are_numbers_in_dictionaries_too() -> None:
-    env = ExplorationEnv(map="env1", reward="combined", weights={"path": np.float32(2), "collision": np.int64(3)})
+    env = ExplorationEnv(map="env1", reward={"path": np.float32(2), "collision": np.int64(3)})
     env.reset(seed=0)
     assert env.step(0)[4]["reward_terms"]["path"] < 0.0

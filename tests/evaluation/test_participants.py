@@ -47,9 +47,10 @@ def fake_agent(monkeypatch: pytest.MonkeyPatch, **attributes: Any) -> PolicyEntr
 
 
 def test_an_agent_brings_the_keywords_that_its_inputs_depend_on(monkeypatch: pytest.MonkeyPatch) -> None:
-    entry = fake_agent(monkeypatch, env_keywords={"reward": "d_optimality", "slip": 7.0})
+    entry = fake_agent(monkeypatch, env_keywords={"observation": "map", "reward": "d_optimality", "slip": 7.0})
     env, _ = make_participants(CORRIDOR, entry)
-    assert the_corridor(env).keywords["reward"] == "d_optimality"
+    assert the_corridor(env).keywords["observation"] == "map"
+    assert the_corridor(env).keywords["reward"] == "completeness"  # episodes are worth the same to everybody
     assert the_corridor(env).keywords["slip"] == 0.1  # the world is the comparison's
 
 

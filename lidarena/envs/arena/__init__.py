@@ -22,4 +22,5 @@ FAMILY = Family(
     measures="lidarena.evaluation.measures.arena:MEASURES",
     baselines="lidarena.baselines.arena",
     agent_options=("observation", "action", "beams", "max_range"),
+    keywords_of_0_1="lidarena.envs.arena.options:modern_keywords",
 )

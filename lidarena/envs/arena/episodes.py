@@ -1,6 +1,6 @@
 """Episodes in a batch of arenas: rewards, endings, observations, infos; the single environment's too."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from typing import Any
 
@@ -10,11 +10,14 @@ from numpy.typing import NDArray
 
 from lidarena.envs.arena.actions import heading_space, turns_of
 from lidarena.envs.arena.kernels import observe
-from lidarena.envs.arena.options import REWARD_TERMS, ArenaOptions
+from lidarena.envs.arena.options import OBSERVATIONS, ArenaOptions
 from lidarena.envs.arena.rendering import PathRecorder, draw_arena
+from lidarena.envs.arena.rewards import REWARDS, weigh_terms
 from lidarena.envs.arena.state import ArenaCore
 from lidarena.envs.compilation import announced_compilation
-from lidarena.envs.infos import Info
+from lidarena.envs.infos import Info, of_world
+from lidarena.envs.observers import OneByOne, choose_observer
+from lidarena.envs.rewards import StepRewards, choose_reward
 
 _FAR = 1.5
 """Distances to the goal are observed over this many sides of the room to which everything is to scale."""
@@ -40,11 +43,14 @@ class ArenaEpisodes:
         self.single_action_space: gym.Space[Any] = heading_space(options.action)
         low = np.concatenate([np.zeros(options.beams + 1), np.full(2, -1.0)]).astype(np.float32)
         self.single_observation_space: gym.Space[Any] = gym.spaces.Box(low, np.ones_like(low), dtype=np.float32)
+        observer = choose_observer(options.observation, OBSERVATIONS)
+        self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds,))
+        if not isinstance(observer, str):
+            self.single_observation_space = observer.space
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
-        self._weights = {term: getattr(options, f"{term}_weight") for term in REWARD_TERMS}
+        self._rewards = StepRewards(choose_reward(options.reward, REWARDS), (worlds,), self._snapshot)
         self._steps = np.zeros(worlds, np.int64)
         self._success = np.zeros(worlds, np.bool_)
-        self._terms = {term: np.zeros(worlds) for term in REWARD_TERMS}
         self._compiled = False
 
     def reset(
@@ -60,15 +66,16 @@ class ArenaEpisodes:
             generators: Of all worlds; each draws from its own.
             seeds: That all worlds were reset with, if they were.
         """
+        begun = list(worlds)
         with nullcontext() if self._compiled else announced_compilation():
-            for world in worlds:
+            for world in begun:
                 self.core.reset_world(world, generators[world], seeds[world] if seeds is not None else None)
                 self._steps[world] = 0
                 self._success[world] = False
-                for term in self._terms.values():
-                    term[world] = 0.0
+                self._rewards.begin(world)
                 if self.recorder is not None:
                     self.recorder.begin(world, self.core)
+        self._rewards.look(begun)
 
     def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
         """Act in every world; returns rewards, terminated and truncated, each (worlds,).
@@ -85,7 +92,8 @@ class ArenaEpisodes:
         self._steps += 1
         collision = core.physics.touched
         self._success = (core.measurements.distance <= core.goal_radius) & ~collision
-        rewards = self._reward(before)
+        weighed = weigh_terms(core, self._rewards.chosen.weights, before, self._success)
+        rewards = self._rewards.add_up(weighed, actions)
         if self.recorder is not None:
             self.recorder.record(core)
         truncated = np.zeros(core.worlds, np.bool_)
@@ -93,25 +101,10 @@ class ArenaEpisodes:
             truncated |= self._steps >= self.options.max_episode_steps
         return rewards, collision | self._success, truncated
 
-    def _reward(self, before: NDArray[np.float64]) -> NDArray[np.float64]:
-        """The weighted sum of the named terms; only additions and products, which no vector unit rounds otherwise."""
-        core = self.core
-        values = {
-            "progress": (before - core.measurements.distance) / core.step_length,
-            "success": self._success.astype(np.float64),
-            "collision": -core.physics.touched.astype(np.float64),
-            "time": np.full(core.worlds, -1.0),
-            "clearance": np.clip(core.measurements.gap / core.approach, 0.0, 1.0) - 1.0,
-            "turn": -np.abs(core.turns - 2.0 * np.pi * np.rint(core.turns / (2.0 * np.pi))) / np.pi,
-        }
-        self._terms = {term: weight * values[term] for term, weight in self._weights.items()}
-        rewards = np.zeros(core.worlds)
-        for term in self._terms.values():
-            rewards += term
-        return rewards
-
-    def observe(self) -> NDArray[np.float32]:
-        """Fresh observations (worlds, beams + 3)."""
+    def observe(self) -> Any:
+        """Fresh observations (worlds, beams + 3), or what an observer of one's own makes of the worlds."""
+        if self._own is not None:
+            return self._own.observe(self._snapshot())
         core = self.core
         out = np.empty((core.worlds, self.options.beams + 3), np.float32)
         proximity = self.options.observation == "proximity"
@@ -121,6 +114,15 @@ class ArenaEpisodes:
 
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds."""
+        return self._facts() | {"reward_terms": {name: term.copy() for name, term in self._rewards.terms.items()}}
+
+    def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
+        """What every step tells, as it is now; one world's part by its number."""
+        facts = self._facts()
+        return lambda index: of_world(facts, index[0])
+
+    def _facts(self) -> Info:
+        """All but what the step was worth."""
         core = self.core
         info = Info(
             {
@@ -134,7 +136,6 @@ class ArenaEpisodes:
                 "collision": core.physics.touched.copy(),
                 "success": self._success.copy(),
                 "radius": core.radii.copy(),
-                "reward_terms": {name: term.copy() for name, term in self._terms.items()},
             }
         )
         known = {"circles": core.circles.copy(), "bounds": core.bounds.copy()}
@@ -164,3 +165,4 @@ class ArenaEpisodes:
         """Continue from the arrays of other episodes with the same options."""
         self._steps[:], self._success = saved["steps"], saved["success"].copy()
         self.core.load_arrays(saved)
+        self._rewards.look()

@@ -8,22 +8,25 @@ import numpy as np
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
+from lidarena.envs.arena.rewards import REWARDS
+from lidarena.envs.observers import ObservationSpec, choose_observer
+from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
 from lidarena.world.arenas import Arena, ArenaGenerator
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.random_arenas import DENSITY
 
 ArenaSpec = str | Arena | Floorplan | ArenaGenerator
-REWARD_TERMS = ("progress", "success", "collision", "time", "clearance", "turn")
-"""Terms of the reward; the keyword ``<term>_weight`` weighs each."""
+OBSERVATIONS = ("ranges", "proximity")
+_WEIGHTS = {f"{term}_weight": term for term in REWARDS.names}
+"""Keywords of version 0.1, and the terms that they weigh."""
 _CHOICES = {
     "pick": ("random", "by_seed"),
     "action": ("continuous", "discrete"),
-    "observation": ("ranges", "proximity"),
     "knowledge": ("map", "lidar"),
     "field": ("robust", "paper", "traditional"),
     "render_mode": (None, "rgb_array"),
 }
-_RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)} | {f"{term}_weight": (0.0, 1e6) for term in REWARD_TERMS}
+_RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)}
 _OPTIONAL_RANGES = {"max_range": (0.01, 1000.0), "decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
 _WHOLE = {"arenas": (1, 10**9), "beams": (4, 3600)}
 
@@ -40,7 +43,7 @@ class ArenaKeywords(TypedDict, total=False):
     pick: str
     solvable: bool
     action: str
-    observation: str
+    observation: ObservationSpec
     beams: int
     max_range: float | None
     lidar_noise: float
@@ -49,12 +52,7 @@ class ArenaKeywords(TypedDict, total=False):
     decision_period: float | None
     goal_radius: float | None
     max_episode_steps: int | None
-    progress_weight: float
-    success_weight: float
-    collision_weight: float
-    time_weight: float
-    clearance_weight: float
-    turn_weight: float
+    reward: RewardSpec
     expose_truth: bool
     field: str
     render_mode: str | None
@@ -82,7 +80,7 @@ class ArenaOptions:
         solvable: Pass over ``"random"`` arenas, and a generator's, in which A* finds no path.
         action: ``"continuous"`` or ``"discrete"`` headings.
         observation: ``"ranges"`` shows the beams over the longest range, ``"proximity"`` the robot's radius over them,
-            which tells near obstacles apart: 1 is contact.
+            which tells near obstacles apart: 1 is contact; or one's own, see ``lidarena.envs.observers``.
         beams: Of the lidar.
         max_range: Of the lidar [m]; None: 30 m in a 100 m room, and to scale in others.
         lidar_noise: Standard deviation of a range [m].
@@ -91,12 +89,10 @@ class ArenaOptions:
         decision_period: Time between decisions [s]; None: 1 s in a 100 m room, and to scale in others.
         goal_radius: The goal is reached from this distance on [m]; None: 1 m in a 100 m room, and to scale in others.
         max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 500.
-        progress_weight: Of the approach to the goal in a step, over the length of a step.
-        success_weight: Of reaching the goal, 1 once.
-        collision_weight: Of touching something, -1 once.
-        time_weight: Of a step, -1 each.
-        clearance_weight: Of coming nearer to something than two steps' length, down to -1 at contact.
-        turn_weight: Of turning, -1 for half a turn.
+        reward: ``"default"``, ``{term: weight}``, ``{"preset": "default", term: weight}`` to change some weights of it,
+            a function of a ``Step``, or ``"module:function"``; see ``lidarena.envs.rewards``. Terms and their weights
+            in ``"default"``: ``progress`` 1, ``success`` 10, ``collision`` 10, ``time`` 0.1, ``clearance`` 0, ``turn``
+            0.
         expose_truth: Give ``info["truth"]``, for evaluation.
         field: Whose potential the picture shows, see :data:`lidarena.planning.potential_field.potential_field.PRESETS`.
         render_mode: None or ``"rgb_array"``.
@@ -111,7 +107,7 @@ class ArenaOptions:
     pick: str = "random"
     solvable: bool = False
     action: str = "continuous"
-    observation: str = "ranges"
+    observation: ObservationSpec = "ranges"
     beams: int = 36
     max_range: float | None = None
     lidar_noise: float = 0.0
@@ -120,12 +116,7 @@ class ArenaOptions:
     decision_period: float | None = None
     goal_radius: float | None = None
     max_episode_steps: int = 500
-    progress_weight: float = 1.0
-    success_weight: float = 10.0
-    collision_weight: float = 10.0
-    time_weight: float = 0.1
-    clearance_weight: float = 0.0
-    turn_weight: float = 0.0
+    reward: RewardSpec = "default"
     expose_truth: bool = False
     field: str = "robust"
     render_mode: str | None = None
@@ -137,6 +128,7 @@ class ArenaOptions:
         Raises:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
+        keywords = modern_keywords(keywords)
         check_names("an arena environment", keywords, [field.name for field in fields(cls)])
         given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
         options = cls(**given)
@@ -152,6 +144,8 @@ class ArenaOptions:
         check_step_limit(options.max_episode_steps)
         check_switch("expose_truth", options.expose_truth)
         check_switch("solvable", options.solvable)
+        choose_reward(options.reward, REWARDS)
+        choose_observer(options.observation, OBSERVATIONS)
         options._check_arenas()
         return options
 
@@ -190,6 +184,15 @@ class ArenaOptions:
     def densities(self) -> list[float]:
         """The densities to draw from."""
         return list(self.density) if isinstance(self.density, Sequence) else [self.density]
+
+
+def modern_keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return keywords in which those of version 0.1 have their names of today.
+
+    Raises:
+        ConfigError: Some are given under both.
+    """
+    return reward_of_weights(keywords, _WEIGHTS, "default")
 
 
 def _check_point(name: str, value: Any) -> None:

@@ -47,4 +47,5 @@ FAMILY = Family(
     measures="lidarena.evaluation.measures.corridor:MEASURES",
     baselines="lidarena.baselines.corridor",
     agent_options=("observation", "action", "neighbours", "beams", "lidar_range"),
+    keywords_of_0_1="lidarena.envs.corridor.options:modern_keywords",
 )

@@ -6,6 +6,7 @@ from typing import Any, Unpack
 import gymnasium as gym
 import numpy as np
 from gymnasium.vector import AutoresetMode
+from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from lidarena.base.keyword_checks import takes_keywords_of
@@ -35,7 +36,7 @@ class CentralEpisodes:
         self.options, self.worlds, self.envs = options, worlds, worlds
         self.teams = CorridorEpisodes(worlds, options)
         robots, one = options.robots, self.teams.observation_space
-        self.single_observation_space: gym.Space[Any] = gym.spaces.Box(-1.0, 1.0, (robots, *one.shape), np.float32)
+        self.single_observation_space: gym.Space[Any] = batch_space(one, robots)
         self.single_action_space: gym.Space[Any] = gym.spaces.Box(-1.0, 1.0, (robots, 2), np.float32)
         if isinstance(self.teams.action_space, gym.spaces.Discrete):
             self.single_action_space = gym.spaces.MultiDiscrete([int(self.teams.action_space.n)] * robots)
@@ -71,6 +72,7 @@ class CentralEpisodes:
                 "finished": self.teams.finished.copy(),
                 "collision": robots["collision"],
                 "path_length": robots["path_length"],
+                "scan": robots["scan"],
                 "reward_terms": {name: term.sum(axis=1) for name, term in robots["reward_terms"].items()},
                 "measures": self.teams.measures(),
             }

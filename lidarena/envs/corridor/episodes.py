@@ -1,6 +1,6 @@
 """Episodes in a batch of multi-robot worlds: rewards, endings, observations, infos; for every interface to them."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from typing import Any
 
@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.corridor.actions import TOP_SPEED, TOP_TURN_RATE, action_space, commands_of
 from lidarena.envs.corridor.kernels import write_observations
-from lidarena.envs.corridor.options import CorridorOptions
+from lidarena.envs.corridor.options import OBSERVATIONS, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch, TrailRecorder
+from lidarena.envs.corridor.rewards import REWARDS, weigh_terms
 from lidarena.envs.corridor.state import CorridorCore
-from lidarena.envs.infos import Info
+from lidarena.envs.infos import Info, of_world
+from lidarena.envs.observers import OneByOne, choose_observer
+from lidarena.envs.rewards import StepRewards, choose_reward
 
-TERMS = ("progress", "arrival", "collision", "time", "closeness", "turning")
 _EXTRA = 8
 """Numbers of an observation besides the beams."""
 NEIGHBOUR = 5
@@ -25,11 +27,6 @@ NEIGHBOUR = 5
 
 class CorridorEpisodes:
     """Runs episodes in ``worlds`` worlds; whoever owns it decides when a world is reset.
-
-    The reward of a robot is the sum of these terms, each times its weight, as long as it is on its way:
-    ``progress`` by how many metres the way to its goal became shorter, ``arrival`` 1 on arrival, ``collision`` -1 when
-    it touches something, ``time`` minus the seconds, ``closeness`` minus the seconds times max(0, 1 - gap / 2 radii)
-    for the gap to the nearest thing that a beam meets, ``turning`` minus the radians turned.
 
     Args:
         worlds: Number of worlds.
@@ -51,6 +48,11 @@ class CorridorEpisodes:
         self.options, self.core = options, CorridorCore(worlds, options)
         self._numbers = options.beams + _EXTRA + NEIGHBOUR * options.neighbours
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (self._numbers,), np.float32)
+        observer = choose_observer(options.observation, OBSERVATIONS, boxes_only=True)
+        self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds, options.robots))
+        if not isinstance(observer, str):
+            assert isinstance(observer.space, gym.spaces.Box)
+            self.observation_space = observer.space
         self.action_space: gym.Space[Any] = action_space(options.action)
         self.trails = TrailRecorder(worlds) if options.render_mode is not None else None
         self.sketches = [TeamSketch() for _ in range(worlds)]
@@ -58,8 +60,7 @@ class CorridorEpisodes:
         self.finished, self.arrived = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
         self.touches, self.steps = np.zeros(shape, np.int64), np.zeros(worlds, np.int64)
         self._arrival_time = np.full(shape, np.nan)
-        self._terms = {name: np.zeros(shape) for name in TERMS}
-        self._weights = {name: float(getattr(options, f"{name}_weight")) for name in TERMS}
+        self._rewards = StepRewards(choose_reward(options.reward, REWARDS), shape, self._snapshot)
         grid = self.core.places.grid
         self._map = np.where(grid.blocked, 100, 0).astype(np.int8)
         self._map.flags.writeable = False
@@ -67,17 +68,18 @@ class CorridorEpisodes:
 
     def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
         """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
+        begun = list(worlds)
         with nullcontext() if self._compiled else announced_compilation():
-            for world in worlds:
+            for world in begun:
                 self.core.reset_world(world, generators[world])
                 self.finished[world] = self.arrived[world] = False
                 self.touches[world] = self.steps[world] = 0
                 self._arrival_time[world] = np.nan
                 self.sketches[world] = TeamSketch()
-                for term in self._terms.values():
-                    term[world] = 0.0
+                self._rewards.begin(world)
                 if self.trails is not None:
                     self.trails.begin(world, self.core.physics.poses[world])
+        self._rewards.look(begun)
 
     def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
         """Act in every world; actions (worlds, robots, …), those of finished robots are not looked at.
@@ -103,8 +105,9 @@ class CorridorEpisodes:
         away = self.core.physics.poses[..., :2] - self.core.goals
         near = np.sqrt((away**2).sum(axis=-1)) <= self.options.goal_tolerance
         arriving = active & near & ~(touching & self.options.collision_ends)
-        rewards = self._reward(active, touching, arriving, before)
         self._note(touching, arriving)
+        weighed = weigh_terms(self.core, self._rewards.chosen.weights, before, active, touching, arriving)
+        rewards = self._rewards.add_up(weighed, array, active)
         terminated = active & self.finished
         truncated = active & ~self.finished & self._out_of_time[:, None]
         return rewards, terminated, truncated
@@ -118,28 +121,6 @@ class CorridorEpisodes:
         self._arrival_time[arriving] = np.repeat(self.time, arriving.sum(axis=1))
         if self.trails is not None:
             self.trails.record(self.core.physics.poses)
-
-    def _reward(
-        self,
-        active: NDArray[np.bool_],
-        touching: NDArray[np.bool_],
-        arriving: NDArray[np.bool_],
-        before: NDArray[np.float64],
-    ) -> NDArray[np.float64]:
-        measurements, period = self.core.measurements, self.options.decision_period
-        raw: dict[str, NDArray[Any]] = {
-            "progress": before - measurements.remaining,
-            "arrival": arriving,
-            "collision": -1.0 * touching,
-            "time": -period * active,
-            "closeness": -period * measurements.closeness,
-            "turning": -period * np.abs(measurements.velocity[..., 1]),
-        }
-        self._terms = {name: self._weights[name] * (values * active) for name, values in raw.items()}
-        total = np.zeros(active.shape)
-        for values in self._terms.values():
-            total += values
-        return total
 
     @property
     def _out_of_time(self) -> NDArray[np.bool_]:
@@ -158,8 +139,11 @@ class CorridorEpisodes:
 
     def observe(self, hide_finished: bool = True) -> NDArray[np.float32]:
         """Fresh observations (worlds, robots, …); of robots that are finished zeros, if wanted."""
-        out = np.empty((*self.finished.shape, self._numbers), np.float32)
         hidden = self.finished if hide_finished else np.zeros_like(self.finished)
+        if self._own is not None:
+            seen: NDArray[np.float32] = self._own.observe(self._snapshot(), hidden)
+            return seen.reshape(*self.finished.shape, *self.observation_space.shape)
+        out = np.empty((*self.finished.shape, self._numbers), np.float32)
         top = np.array([TOP_SPEED, TOP_TURN_RATE])
         reach, neighbours = self.core.beam.max_range, self.options.neighbours
         write_observations(self.core.measurements, self.core.goals, hidden, reach, top, neighbours, out)
@@ -167,6 +151,15 @@ class CorridorEpisodes:
 
     def robot_infos(self) -> Info:
         """What every step tells each robot, as arrays over (worlds, robots)."""
+        return self._robot_facts() | {"reward_terms": {name: term.copy() for name, term in self._rewards.terms.items()}}
+
+    def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
+        """What every step tells, as it is now; one robot's part by the numbers of its world and its own."""
+        robots, worlds = self._robot_facts(), self.world_infos()
+        return lambda index: of_world(of_world(robots, index[0]), index[1]) | of_world(worlds, index[0])
+
+    def _robot_facts(self) -> Info:
+        """All but what the step was worth."""
         core = self.core
         return Info(
             {
@@ -176,7 +169,7 @@ class CorridorEpisodes:
                 "success": self.arrived.copy(),
                 "collision": self.touches > 0,
                 "path_length": core.travelled.copy(),
-                "reward_terms": {name: term.copy() for name, term in self._terms.items()},
+                "scan": core.measurements.scans.copy(),
             }
         )
 
@@ -218,6 +211,7 @@ class CorridorEpisodes:
             getattr(self, name)[...] = saved[name]
         self._arrival_time[...] = saved["arrival_time"]
         self.core.load_arrays(saved)
+        self._rewards.look()
         if self.trails is not None:  # what was driven before is not saved
             for world, poses in enumerate(self.core.physics.poses):
                 self.trails.begin(world, poses)

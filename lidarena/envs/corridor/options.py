@@ -6,12 +6,18 @@ from typing import Any, TypedDict
 
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
+from lidarena.envs.corridor.rewards import REWARDS
+from lidarena.envs.observers import ObservationSpec, choose_observer
+from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import MapSpec
 
 Points = Sequence[Sequence[float]]
 
 MOST_ROBOTS = 64
+OBSERVATIONS = ("ranges",)
+_WEIGHTS = {f"{term}_weight": term for term in REWARDS.names}
+"""Keywords of version 0.1, and the terms that they weigh."""
 _RANGES = {
     "radius": (0.02, 1.0),
     "lidar_range": (0.5, 30.0),
@@ -21,12 +27,6 @@ _RANGES = {
     "stall_rate": (0.0, 1.0),
     "decision_period": (0.02, 1.0),
     "goal_tolerance": (0.02, 1.0),
-    "progress_weight": (0.0, 1e6),
-    "arrival_weight": (0.0, 1e6),
-    "collision_weight": (0.0, 1e6),
-    "time_weight": (0.0, 1e6),
-    "closeness_weight": (0.0, 1e6),
-    "turning_weight": (0.0, 1e6),
 }
 _WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440), "neighbours": (0, MOST_ROBOTS)}
 _CHOICES = {"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")}
@@ -53,14 +53,10 @@ class CorridorKeywords(TypedDict, total=False):
     goal_tolerance: float
     collision_ends: bool
     max_episode_steps: int | None
+    observation: ObservationSpec
+    reward: RewardSpec
     expose_truth: bool
     render_mode: str | None
-    progress_weight: float
-    arrival_weight: float
-    collision_weight: float
-    time_weight: float
-    closeness_weight: float
-    turning_weight: float
 
 
 @dataclass(frozen=True)
@@ -91,14 +87,13 @@ class CorridorOptions:
         collision_ends: Whether a robot that touches something is finished; else it drives on.
         max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 1000. PettingZoo calls it
             ``max_cycles``.
+        observation: ``"ranges"``, or one's own of a robot, see ``lidarena.envs.observers``.
+        reward: Of each robot: ``"default"``, ``{term: weight}``, ``{"preset": "default", term: weight}`` to change some
+            weights of it, a function of a ``Step``, or ``"module:function"``; see ``lidarena.envs.rewards``. Terms and
+            their weights in ``"default"``: ``progress`` 1, ``arrival`` 10, ``collision`` 10, ``time`` 0.1,
+            ``closeness`` 0, ``turning`` 0.
         expose_truth: Give ``info["truth"]``, for evaluation.
         render_mode: None, ``"rgb_array"`` or ``"human"``.
-        progress_weight: Of a metre of the way to the goal.
-        arrival_weight: Of the arrival.
-        collision_weight: Of a collision.
-        time_weight: Of a second on the way.
-        closeness_weight: Of a second right beside something, see ``CorridorEpisodes``.
-        turning_weight: Of a radian turned.
     """
 
     map: MapSpec = "office"
@@ -119,14 +114,10 @@ class CorridorOptions:
     goal_tolerance: float = 0.15
     collision_ends: bool = True
     max_episode_steps: int = 1000
+    observation: ObservationSpec = "ranges"
+    reward: RewardSpec = "default"
     expose_truth: bool = False
     render_mode: str | None = None
-    progress_weight: float = 1.0
-    arrival_weight: float = 10.0
-    collision_weight: float = 10.0
-    time_weight: float = 0.1
-    closeness_weight: float = 0.0
-    turning_weight: float = 0.0
 
     @classmethod
     def checked(cls, keywords: Mapping[str, Any]) -> "CorridorOptions":
@@ -135,6 +126,7 @@ class CorridorOptions:
         Raises:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
+        keywords = modern_keywords(keywords)
         check_names("a corridor environment", keywords, [field.name for field in fields(cls)])
         given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
         options = cls(**given)
@@ -144,6 +136,8 @@ class CorridorOptions:
             check_range(name, getattr(options, name), low, high)
         for name, (least, most) in _WHOLE.items():
             check_range(name, getattr(options, name), least, most, whole=True)
+        choose_reward(options.reward, REWARDS)
+        choose_observer(options.observation, OBSERVATIONS, boxes_only=True)
         options._check_rest()
         return options
 
@@ -163,3 +157,12 @@ class CorridorOptions:
 
 
 _PLACES = ("predefined", "random")
+
+
+def modern_keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return keywords in which those of version 0.1 have their names of today.
+
+    Raises:
+        ConfigError: Some are given under both.
+    """
+    return reward_of_weights(keywords, _WEIGHTS, "default")

@@ -22,7 +22,7 @@ from lidarena.base.generator_state import generator_from_words, generator_words
 from lidarena.base.keyword_checks import check_names, check_step_limit, takes_keywords_of
 from lidarena.envs.action_bounds import within_bounds
 from lidarena.envs.corridor.episodes import CorridorEpisodes
-from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
+from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions, modern_keywords
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.corridor.window import close_window, draw_world
 from lidarena.envs.infos import Info, of_world
@@ -138,10 +138,11 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         """
         if "max_episode_steps" in keywords:
             raise ConfigError("keyword 'max_episode_steps' is called 'max_cycles' here, as everywhere in PettingZoo")
-        check_names("corridor_v0", keywords, ["max_cycles", *_KEYWORDS])
+        modern = modern_keywords(keywords)
+        check_names("corridor_v0", modern, ["max_cycles", *_KEYWORDS])
         if max_cycles is not None:
             check_step_limit(max_cycles, "max_cycles")
-        options = CorridorOptions.checked({**keywords, "max_episode_steps": max_cycles})
+        options = CorridorOptions.checked({**modern, "max_episode_steps": max_cycles})
         self.episodes = CorridorEpisodes(1, options)
         self.max_cycles, self.render_mode = options.max_episode_steps, options.render_mode
         self.possible_agents = [agent_name(robot) for robot in range(options.robots)]
@@ -289,7 +290,7 @@ def _copy(space: gym.Space[Any]) -> gym.Space[Any]:
     if isinstance(space, gym.spaces.Discrete):
         return gym.spaces.Discrete(int(space.n))
     assert isinstance(space, gym.spaces.Box)
-    return gym.spaces.Box(space.low, space.high, dtype=np.float32)
+    return gym.spaces.Box(space.low, space.high, dtype=space.dtype.type)
 
 
 @takes_keywords_of(CorridorOptions, without=["max_episode_steps"])

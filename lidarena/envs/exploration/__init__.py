@@ -33,4 +33,5 @@ FAMILY = Family(
     },
     measures="lidarena.evaluation.measures.exploration:MEASURES",
     baselines="lidarena.baselines.exploration",
+    keywords_of_0_1="lidarena.envs.exploration.options:keywords_of_0_1",
 )

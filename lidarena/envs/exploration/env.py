@@ -46,13 +46,14 @@ class ExplorationEnv(SingleWorld):
     |-----|-------------|
     | 0–4 | beams at 0, 45, 90, -45, -90 degrees, over 3.5 m |
     | 5   | previous action / 2 (continuous: two numbers, each mapped to [0, 1]) |
-    | 6   | completeness; with ``reward="d_optimality"`` the entropy of the particles' weights / ln N |
+    | 6   | completeness |
 
     ``observation="sectors"``, ``Box(0, 1, (38,), float32)``: the same, except that 0–35 are the nearest hits in 36
     sectors of 10 degrees, the first one centred straight ahead, counter-clockwise. A wall's end between two of the five
     beams cannot hide from it.
 
-    ``observation="compass"``, ``Box(0, 1, (76,), float32)``, also says which way the edge of the known map lies:
+    ``observation="frontier_histogram"``, ``Box(0, 1, (76,), float32)``, also says which way the edge of the known
+    map lies:
 
     | Num   | Observation |
     |-------|-------------|
@@ -60,6 +61,9 @@ class ExplorationEnv(SingleWorld):
     | 36–71 | to how much of the frontier each sector leads, around walls, see ``frontier_histogram`` |
     | 72–73 | (1 + cos) / 2, (1 + sin) / 2 of the mean direction of these; 0.5, 0.5 where there is none |
     | 74–75 | as 5 and 6 above |
+
+    ``"da_slam_entropy"``, ``"sectors_entropy"`` and ``"frontier_histogram_entropy"`` hold the entropy of the particles'
+    weights / ln N in place of the completeness, as DA-SLAM's agent for uncertainty sees it.
 
     ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
 

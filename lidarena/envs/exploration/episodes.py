@@ -1,7 +1,7 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
 import math
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import nullcontext
 from typing import Any
 
@@ -11,12 +11,14 @@ from numpy.typing import NDArray
 
 from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.exploration.actions import action_space, commands_of
-from lidarena.envs.exploration.observations import check_entropy, make_observer
-from lidarena.envs.exploration.options import ExplorationOptions
+from lidarena.envs.exploration.observations import ENTROPY, check_entropy, make_observer
+from lidarena.envs.exploration.options import OBSERVATIONS, ExplorationOptions
 from lidarena.envs.exploration.rendering import PathRecorder, draw_exploration
-from lidarena.envs.exploration.rewards import make_reward
+from lidarena.envs.exploration.rewards import REWARDS, ExplorationTerms
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
-from lidarena.envs.infos import Info
+from lidarena.envs.infos import Info, of_world
+from lidarena.envs.observers import OneByOne, choose_observer
+from lidarena.envs.rewards import StepRewards, choose_reward
 
 _GAIN = 0.001
 """Share of the map that counts as a gain where patience is limited."""
@@ -41,17 +43,21 @@ class ExplorationEpisodes:
         self.core = ExplorationCore(worlds, options)
         self.single_action_space: gym.Space[Any] = action_space(options.action)
         parts = 1 if options.action == "discrete" else 2
-        uncertain = options.reward == "d_optimality"
-        if uncertain and options.observation != "map":
+        look = choose_observer(options.observation, OBSERVATIONS)
+        own = None if isinstance(look, str) else look
+        self._own = None if own is None else OneByOne(own, (worlds,))
+        if isinstance(look, str) and look.endswith(ENTROPY):
             check_entropy(self.core)
-        self.observer = make_observer(options.observation, parts, uncertain, self.core.beam.beams)
-        self.single_observation_space = self.observer.space
+        self.observer = make_observer(look if isinstance(look, str) else "da_slam", parts, self.core.beam.beams)
+        self.single_observation_space = self.observer.space if own is None else own.space
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
         self._steps = np.zeros(worlds, np.int64)
         self._previous = np.zeros((worlds, parts))
         self._completeness = np.zeros(worlds)
         self._gained, self._gained_at = np.zeros(worlds), np.zeros(worlds, np.int64)
-        self._reward = make_reward(self.core, options)
+        chosen = choose_reward(options.reward, REWARDS)
+        self._terms = ExplorationTerms(self.core, chosen, options.eta, options.certain_enough)
+        self._rewards = StepRewards(chosen, (worlds,), self._snapshot)
         self._compiled = False
 
     def reset(
@@ -61,16 +67,19 @@ class ExplorationEpisodes:
         seeds: Sequence[int | None] | None = None,
     ) -> None:
         """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
+        begun = list(worlds)
         with nullcontext() if self._compiled else announced_compilation():
-            for world in worlds:
+            for world in begun:
                 self.core.reset_world(world, generators[world])
                 self._steps[world] = self._gained_at[world] = 0
                 self._gained[world] = 0.0
                 self._previous[world] = 0.0
                 if self.recorder is not None:
                     self.recorder.begin(world, self.core)
-                self._reward.begin(world)
+                self._terms.begin(world)
+                self._rewards.begin(world)
         self._completeness = self.core.completeness
+        self._rewards.look(begun)
 
     def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
         """Act in every world; returns rewards, terminated and truncated, each (worlds,).
@@ -85,7 +94,7 @@ class ExplorationEpisodes:
         self._steps += 1
         self._remember(np.asarray(actions, dtype=np.float64))
         before, self._completeness = self._completeness, self.core.completeness
-        rewards = self._reward.grade(self._completeness - before)
+        rewards = self._rewards.add_up(self._terms.weigh(self._completeness - before), actions)
         terminated = self.core.sensors.collision.copy()
         terminated |= self._explored()
         if self.recorder is not None:
@@ -115,10 +124,23 @@ class ExplorationEpisodes:
 
     def observe(self) -> Any:
         """Fresh observations of all worlds."""
+        if self._own is not None:
+            return self._own.observe(self._snapshot())
         return self.observer.observe(self.core, self._previous)
 
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds; ``map`` is a read-only view that later steps change."""
+        terms = {name: term.copy() for name, term in self._rewards.terms.items()}
+        return self._facts() | {"reward_terms": terms}
+
+    def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
+        """What every step tells, as it is now; one world's part by its number."""
+        facts = self._facts()
+        facts["map"] = facts["map"].copy()
+        return lambda index: of_world(facts, index[0])
+
+    def _facts(self) -> Info:
+        """All but what the step was worth."""
         core = self.core
         view = core.maps.occupancy[:]
         view.flags.writeable = False
@@ -133,8 +155,8 @@ class ExplorationEpisodes:
                 "time": self._steps * self.options.decision_period,
                 "collision": core.sensors.collision.copy(),
                 "success": self._explored() & ~core.sensors.collision,
+                "scan": core.sensors.scans[:, 0].copy(),
                 "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
-                "reward_terms": {name: term.copy() for name, term in self._reward.terms.items()},
                 "map": view,
                 "resolution": np.full(core.worlds, RESOLUTION),
                 "origin": core.maps.origin.copy(),
@@ -168,13 +190,14 @@ class ExplorationEpisodes:
         """Everything that later steps depend on, by name, except the generators."""
         own = {"steps": self._steps, "previous": self._previous, "completeness": self._completeness}
         own |= {"gained": self._gained, "gained_at": self._gained_at}
-        return own | self._reward.arrays() | self.core.arrays()
+        return own | self._terms.arrays() | self.core.arrays()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of other episodes with the same options."""
         self._steps[:], self._previous[:] = saved["steps"], saved["previous"]
         self._completeness = saved["completeness"].copy()
         self._gained[:], self._gained_at[:] = saved["gained"], saved["gained_at"]
-        for name, array in self._reward.arrays().items():
+        for name, array in self._terms.arrays().items():
             array[:] = saved[name]
         self.core.load_arrays(saved)
+        self._rewards.look()

@@ -22,8 +22,8 @@ PICTURE = 64
 """Rows and columns of the egocentric picture."""
 PICTURE_CELL = 0.1
 """Side of one of its pixels [m]."""
-VARIANCE_BOUND = 1e6
-"""No pose in a map of at most 1 km a side varies more [m²]; Gymnasium asks for finite bounds."""
+LEAST_DEVIATION, DECADES = 1e-3, 4.0
+"""Standard deviations of poses are observed from 1 mm or 1 mrad on, over so many powers of ten."""
 
 
 class Observer(Protocol):
@@ -35,26 +35,26 @@ class Observer(Protocol):
         """Fresh observations of all worlds, given what they did last as numbers in [0, 1] ``(worlds, k)``."""
 
 
-class PaperObserver:
+class DaSlamObserver:
     """DA-SLAM's state s_t = [O_t, a_(t-1), r_(t-1)] (eq. 4).
 
     Five beams over the maximum range, the previous action (number over 2; continuous: both parts mapped to [0, 1]), and
-    the completeness, or for the uncertainty reward the entropy over ln N; every entry in [0, 1].
+    the completeness, or, as DA-SLAM has it beside its uncertainty reward, the entropy over ln N; every entry in [0, 1].
 
     Args:
         action_parts: Numbers that the previous action takes up.
-        uncertain: Whether the last entry is the entropy.
+        entropy: Whether the last entry is the entropy.
     """
 
     looks = len(FRONT_BEAMS)
 
-    def __init__(self, action_parts: int, uncertain: bool) -> None:
-        self._uncertain = uncertain
+    def __init__(self, action_parts: int, entropy: bool = False) -> None:
+        self._entropy = entropy
         self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (self.looks + action_parts + 1,), np.float32)
 
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
         """``(worlds, looks + 1 + k)`` float32."""
-        last = scaled_entropy(core) if self._uncertain else core.completeness
+        last = scaled_entropy(core) if self._entropy else core.completeness
         return np.concatenate([self._look(core), previous, last[:, None]], axis=1, dtype=np.float32)
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
@@ -63,7 +63,7 @@ class PaperObserver:
         return seen / core.beam.max_range
 
 
-class SectorObserver(PaperObserver):
+class SectorObserver(DaSlamObserver):
     """DA-SLAM's state with the nearest hit in each of ``SECTORS`` sectors in place of five single beams.
 
     Nothing fits between the beams of a sector, where DA-SLAM's five leave 45 degrees unseen.
@@ -75,7 +75,7 @@ class SectorObserver(PaperObserver):
         return nearest_hits(core.sensors.scans[:, 0]) / core.beam.max_range
 
 
-class CompassObserver(PaperObserver):
+class FrontierHistogramObserver(DaSlamObserver):
     """DA-SLAM's state with walls as near as they are, and which way to drive, in place of five beams.
 
     First how near the nearest hit in each sector is, ``START_CLEARANCE`` over the range: a wall far off, which says
@@ -98,7 +98,7 @@ class MapObserver:
     - ``map`` (3, 64, 64) uint8: 6.4 m × 6.4 m of the believed map around the believed pose, the robot in the middle,
       heading up; 255 where a pixel holds an occupied cell, a free cell, and no known cell at all (three channels).
     - ``scan`` (360,) float32: all beams over the maximum range, the first one straight ahead, counter-clockwise.
-    - ``covariance`` (6,) float32: xx, xy, xθ, yy, yθ, θθ of the pose's covariance [m², m rad, rad²].
+    - ``covariance`` (6,) float32, see ``scaled_covariance``: how uncertain the pose is.
     - ``state`` float32: previous action (as in DA-SLAM's observation), completeness, entropy over ln N.
 
     Args:
@@ -111,7 +111,7 @@ class MapObserver:
             {
                 "map": gym.spaces.Box(0, 255, (3, PICTURE, PICTURE), np.uint8),
                 "scan": gym.spaces.Box(0.0, 1.0, (beams,), np.float32),
-                "covariance": gym.spaces.Box(-VARIANCE_BOUND, VARIANCE_BOUND, (6,), np.float32),
+                "covariance": gym.spaces.Box(np.repeat(np.array([0.0, -1.0], np.float32), 3), np.ones(6, np.float32)),
                 "state": gym.spaces.Box(0.0, 1.0, (action_parts + 2,), np.float32),
             }
         )
@@ -120,22 +120,29 @@ class MapObserver:
         """Each entry with a leading axis of worlds."""
         picture = np.empty((core.worlds, 3, PICTURE, PICTURE), np.uint8)
         crop_maps(core.maps.occupancy, core.maps.origin, core.estimate, picture)
-        rows, columns = np.triu_indices(3)
         last = np.stack([core.completeness, scaled_entropy(core)], axis=1)
         return {
             "map": picture,
             "scan": core.sensors.scans[:, 0] / np.float32(core.beam.max_range),
-            "covariance": core.covariance[:, rows, columns].astype(np.float32),
+            "covariance": scaled_covariance(core.covariance),
             "state": np.concatenate([previous, last], axis=1).astype(np.float32),
         }
 
 
-def make_observer(kind: str, action_parts: int, uncertain: bool, beams: int) -> Observer:
-    """Make what the keyword ``observation`` names."""
+FLAT: dict[str, type[DaSlamObserver]] = {
+    "da_slam": DaSlamObserver,
+    "sectors": SectorObserver,
+    "frontier_histogram": FrontierHistogramObserver,
+}
+ENTROPY = "_entropy"
+"""End of the names of the same observations with the entropy in the last place."""
+
+
+def make_observer(kind: str, action_parts: int, beams: int) -> Observer:
+    """Make what the keyword ``observation`` names, one of ``options.OBSERVATIONS``."""
     if kind == "map":
         return MapObserver(action_parts, beams)
-    flat = {"da_slam": PaperObserver, "sectors": SectorObserver, "compass": CompassObserver}
-    return flat[kind](action_parts, uncertain)
+    return FLAT[kind.removesuffix(ENTROPY)](action_parts, kind.endswith(ENTROPY))
 
 
 def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
@@ -144,6 +151,26 @@ def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
     around = np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width)
     nearest: NDArray[np.float32] = around.min(axis=2)
     return nearest
+
+
+def scaled_covariance(covariance: NDArray[np.float64]) -> NDArray[np.float32]:
+    """Covariances of poses as numbers that a network can read, (worlds, 6).
+
+    The standard deviations of x, y and θ as (log10 σ + 3) / 4, so that 1 mm or 1 mrad is 0, 10 m or 10 rad is 1, and
+    each power of ten a quarter; then the correlations of x and y, x and θ, y and θ, from -1 to 1.
+
+    Args:
+        covariance: (worlds, 3, 3) [m, m, rad].
+    """
+    rows, columns = np.triu_indices(3, 1)
+    deviations = np.sqrt(np.maximum(np.diagonal(covariance, axis1=1, axis2=2), 0.0))
+    # one by one: NumPy's logarithm takes another path for the last few of an array
+    decades = [[math.log10(max(d, LEAST_DEVIATION) / LEAST_DEVIATION) for d in row] for row in deviations.tolist()]
+    products = deviations[:, rows] * deviations[:, columns]
+    correlations = covariance[:, rows, columns] / np.where(products > 0.0, products, 1.0)
+    both = np.concatenate([np.array(decades) / DECADES, correlations], axis=1)
+    scaled: NDArray[np.float32] = np.clip(both, -1.0, 1.0).astype(np.float32)
+    return scaled
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:
@@ -161,7 +188,7 @@ def check_entropy(core: ExplorationCore) -> None:
     if core.estimator.scaled_entropy() is None:
         raise ConfigError(
             f"slam = {estimator_name(core.options.slam)!r} has no entropy, which this observation holds; "
-            "take observation='map', whose entropy is 0 then, or another reward"
+            "take one without '_entropy' in its name"
         )
 
 

@@ -4,30 +4,34 @@ import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, TypedDict
+from warnings import warn
 
-from lidarena.base.errors import ConfigError, MapError, suggest
+from lidarena.base.errors import ConfigError, MapError
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.envs.exploration.coverage import START_MARGIN
+from lidarena.envs.exploration.rewards import CERTAIN_ENOUGH, ETA, REWARDS
+from lidarena.envs.observers import ObservationSpec, choose_observer
+from lidarena.envs.rewards import RewardSpec, choose_reward
 from lidarena.slam.registry import check_slam, estimator_name
 from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
 from lidarena.world.load import MapSpec
 
-ETA = 1.2e-4
-"""η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). DA-SLAM
-prints 1, with which every step is worth 2."""
-
-COMBINED_WEIGHTS = {"completeness": 10.0, "path": 1.0, "uncertainty": 1.0, "collision": 10.0}
-"""Default weights of the combined reward: a whole drive is worth more than none also in the real buildings."""
-CERTAIN_ENOUGH = 1.3e-4
-"""The usual D-optimality of an exploring robot in Env-1 to Env-4."""
-
 SlamSpec = str | Callable[..., Any] | Mapping[str, Any]
 _CHOICES = {
-    "reward": ("completeness", "d_optimality", "combined"),
-    "observation": ("da_slam", "sectors", "compass", "map"),
     "action": ("discrete", "continuous"),
     "render_mode": (None, "rgb_array"),
 }
+OBSERVATIONS = (
+    "da_slam",
+    "da_slam_entropy",
+    "sectors",
+    "sectors_entropy",
+    "frontier_histogram",
+    "frontier_histogram_entropy",
+    "map",
+)
+_RENAMED_OBSERVATIONS = {"compass": "frontier_histogram"}
+_EXAMPLE = "reward = {'preset': 'combined', 'path': 2.0}"
 _RANGES = {
     "lidar_noise": (0.0, 1.0),
     "odometry_noise": (0.0, 100.0),
@@ -42,8 +46,8 @@ class ExplorationKeywords(TypedDict, total=False):
     """The keywords of ``ExplorationOptions`` with their types, for editors and type checkers."""
 
     map: MapSpec | Sequence[MapSpec]
-    reward: str
-    observation: str
+    reward: RewardSpec
+    observation: ObservationSpec
     action: str
     slam: SlamSpec
     particles: int
@@ -58,7 +62,6 @@ class ExplorationKeywords(TypedDict, total=False):
     expose_truth: bool
     render_mode: str | None
     eta: float
-    weights: Mapping[str, float] | None
     certain_enough: float
 
 
@@ -71,10 +74,14 @@ class ExplorationOptions:
             own or its ``"module:callable"``, which draws a new plan for every episode (see
             ``lidarena.world.plan_generators.PlanGenerator``); or a list of these, from which every reset draws one.
         reward: ``"completeness"`` (DA-SLAM's eq. 2), ``"d_optimality"`` (eq. 3), or ``"combined"``: the whole map on
-            a short path with a certain pose.
+            a short path with a certain pose; ``{term: weight}`` of ``completeness``, ``d_optimality``, ``path``,
+            ``uncertainty``, ``collision``; ``{"preset": name, term: weight}`` to change some weights of one of the
+            three; a function of a ``Step``, or ``"module:function"``; see ``lidarena.envs.rewards``.
         observation: ``"da_slam"`` (DA-SLAM's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
-            five beams), ``"compass"`` (that, and which way the edge of the known map lies) or ``"map"`` (a dictionary
-            with an egocentric picture of the map).
+            five beams), ``"frontier_histogram"`` (that, and which way the edge of the known map lies), each of them
+            with ``"_entropy"`` behind its name for the entropy of the particles' weights in place of the completeness,
+            or ``"map"`` (a dictionary with an egocentric picture of the map); or one's own, see
+            ``lidarena.envs.observers``.
         action: ``"discrete"`` (DA-SLAM's three) or ``"continuous"``.
         slam: ``"rbpf"`` runs the particle filter, ``"odometry"`` maps with the pose that the odometry adds up to,
             ``"truth"`` with the true one. Or an estimator of one's own: ``"module:callable"``, a class or function (see
@@ -91,16 +98,14 @@ class ExplorationOptions:
         patience: Time without 0.1% more completeness after which an episode is truncated [s]; None never.
         expose_truth: Give ``info["truth"]``, for evaluation.
         render_mode: None or ``"rgb_array"``.
-        eta: η of the uncertainty reward [m^(4/3) rad^(2/3)].
-        weights: Of the combined reward, by the names of its terms: ``completeness``, ``path``, ``uncertainty``,
-            ``collision``; those left out keep their defaults.
-        certain_enough: D-optimality from which on down the combined reward pays for no more certainty
+        eta: η of the term ``d_optimality`` [m^(4/3) rad^(2/3)].
+        certain_enough: D-optimality from which on down the term ``uncertainty`` pays for no more certainty
             [m^(4/3) rad^(2/3)].
     """
 
     map: MapSpec | Sequence[MapSpec] = "willow_lobby"
-    reward: str = "completeness"
-    observation: str = "da_slam"
+    reward: RewardSpec = "completeness"
+    observation: ObservationSpec = "da_slam"
     action: str = "discrete"
     slam: SlamSpec = "rbpf"
     particles: int = 30
@@ -115,7 +120,6 @@ class ExplorationOptions:
     expose_truth: bool = False
     render_mode: str | None = None
     eta: float = ETA
-    weights: Mapping[str, float] | None = None
     certain_enough: float = CERTAIN_ENOUGH
 
     @classmethod
@@ -126,6 +130,10 @@ class ExplorationOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
             MapError: A start that is neither a pose, ``"random"`` nor None.
         """
+        keywords = modern_keywords(keywords)
+        if keywords.get("reward") == "d_optimality" and "observation" not in keywords:
+            words = "observation = 'da_slam' tells the completeness whatever the reward; name it, or 'da_slam_entropy'"
+            warn(f"{words}, which reward = 'd_optimality' used to give", DeprecationWarning, stacklevel=3)
         check_names("an exploration environment", keywords, [field.name for field in fields(cls)])
         given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
         options = cls(**given)
@@ -144,7 +152,8 @@ class ExplorationOptions:
             check_range("patience", self.patience, 0.01, 1e9)
         self._check_slam()
         check_switch("expose_truth", self.expose_truth)
-        self._check_weights()
+        choose_reward(self.reward, REWARDS)
+        choose_observer(self.observation, OBSERVATIONS)
         if isinstance(self.start, str) and self.start != "random":
             raise MapError(f"start = {self.start!r} must be a pose (x, y, theta), 'random' or None")
         if self.start is not None and not isinstance(self.start, str):
@@ -172,27 +181,44 @@ class ExplorationOptions:
         given = self.slam if isinstance(self.slam, Mapping) else {}
         return {"name": "rbpf", "particles": self.particles, **given}
 
-    def _check_weights(self) -> None:
-        if self.weights is None:
-            return
-        if self.reward != "combined":
-            raise ConfigError(f"weights = {self.weights!r} are for reward='combined', not {self.reward!r}")
-        if not isinstance(self.weights, Mapping):
-            raise ConfigError(f"weights = {self.weights!r} must be numbers by name, of {', '.join(COMBINED_WEIGHTS)}")
-        for name, value in self.weights.items():
-            if name not in COMBINED_WEIGHTS:
-                raise ConfigError(f"unknown weight {name!r}{suggest(str(name), COMBINED_WEIGHTS)}")
-            check_range(f"weights.{name}", value, 0.0, 1e6)
-
-    @property
-    def combined_weights(self) -> dict[str, float]:
-        """All weights of the combined reward."""
-        return COMBINED_WEIGHTS | {name: float(value) for name, value in (self.weights or {}).items()}
-
     @property
     def maps(self) -> list[MapSpec]:
         """The floor plans to draw from."""
         return list(self.map) if isinstance(self.map, Sequence) and not isinstance(self.map, str) else [self.map]
+
+
+def modern_keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return keywords in which those of version 0.1 have their names and values of today.
+
+    Raises:
+        ConfigError: Some are given under both.
+    """
+    modern = dict(keywords)
+    weights = modern.pop("weights", None)
+    if weights is not None:
+        if modern.get("reward") != "combined" or not isinstance(weights, Mapping):
+            raise ConfigError(f"weights = {weights!r} is given as {_EXAMPLE} now; it went with reward = 'combined'")
+        modern["reward"] = {"preset": "combined", **weights}
+        warn(f"weights is given as reward = {modern['reward']!r} now", DeprecationWarning, stacklevel=3)
+    old = modern.get("observation")
+    if isinstance(old, str) and old in _RENAMED_OBSERVATIONS:
+        modern["observation"] = now = _RENAMED_OBSERVATIONS[old]
+        warn(f"observation = {old!r} is called {now!r} now", DeprecationWarning, stacklevel=3)
+    return modern
+
+
+def keywords_of_0_1(keywords: Mapping[str, Any]) -> dict[str, Any]:
+    """Return keywords that are known to have been given to version 0.1, so that they mean today what they meant.
+
+    There ``reward="d_optimality"`` put the entropy in the last place of the observation, which is one of its own now.
+    """
+    modern = modern_keywords(keywords)
+    seen = modern.get("observation", "da_slam")
+    if modern.get("reward") == "d_optimality" and f"{seen}_entropy" in OBSERVATIONS:
+        modern["observation"] = f"{seen}_entropy"
+        words = f"what reward = 'd_optimality' made of observation = {seen!r} is observation = '{seen}_entropy' now"
+        warn(words, DeprecationWarning, stacklevel=2)
+    return modern
 
 
 def _check_pose(start: Any) -> None:

@@ -1,19 +1,21 @@
 """What exploring is rewarded for: DA-SLAM's two rewards, and the one that wants all at once."""
 
 import math
-from collections.abc import Mapping
-from typing import Any, Protocol
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.envs.exploration.options import CERTAIN_ENOUGH, ExplorationOptions
-from lidarena.envs.exploration.state import ExplorationCore
+from lidarena.envs.rewards import ChosenReward, Floats, RewardTerms
 
-Floats = NDArray[np.float64]
+if TYPE_CHECKING:
+    from lidarena.envs.exploration.state import ExplorationCore
 
-CRASH_REWARD = -100.0
-"""DA-SLAM's r_crashed."""
+ETA = 1.2e-4
+"""η of the uncertainty reward: the median D-optimality of random driving in Env-1 (``benchmarks/eta.py``). DA-SLAM
+prints 1, with which every step is worth 2."""
+CERTAIN_ENOUGH = 1.3e-4
+"""The usual D-optimality of an exploring robot in Env-1 to Env-4."""
 USUAL_PATH_PER_AREA = 0.55
 """About what ``frontier`` drives for a square metre of floor plan [1/m]."""
 ORDINARY_AREA, LARGEST_AREA = 56.0, 91.0
@@ -23,139 +25,104 @@ SIZE_POWER = 1.5
 USUAL_STEPS = 50
 """The mean of D-optimality begins as if it had been the usual one for so many steps; the certain start says little."""
 
-
-class Reward(Protocol):
-    """Rewards the steps of a batch; ``terms`` are those of the last step by name, (worlds,) each."""
-
-    terms: dict[str, Floats]
-
-    def begin(self, world: int) -> None:
-        """Begin a new episode in a world that has been reset."""
-
-    def grade(self, gain: Floats) -> Floats:
-        """Grade the step that all worlds have taken, (worlds,); ``gain`` (worlds,) is that of completeness."""
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """What later rewards depend on, by name; a view, to be written to when a state is loaded."""
+REWARDS = RewardTerms(
+    ("completeness", "d_optimality", "path", "uncertainty", "collision"),
+    {
+        "completeness": {"completeness": 100.0, "collision": 100.0},
+        "d_optimality": {"d_optimality": 1.0, "collision": 100.0},
+        "combined": {"completeness": 10.0, "path": 1.0, "uncertainty": 1.0, "collision": 10.0},
+    },
+)
+"""See ``ExplorationTerms``. DA-SLAM's r_crashed is -100; with the weights of ``combined`` a whole drive is worth more
+than none also in the real buildings."""
+_CRASH_REPLACES = ("completeness", "d_optimality")
+"""DA-SLAM's presets, in which the step of a crash earns nothing else."""
 
 
-class CompletenessReward:
-    """DA-SLAM's eq. 2: -100 for a crash, or else the gain in completeness in percentage points."""
+class ExplorationTerms:
+    """The terms of an exploring robot's reward.
 
-    def __init__(self, core: ExplorationCore) -> None:
-        self._core = core
-        self.terms = {name: np.zeros(core.worlds) for name in ("completeness", "collision")}
+    - ``completeness``: the gain in map completeness, from 0 to 1. Times 100 it is DA-SLAM's eq. 2.
+    - ``d_optimality``: 1 + tanh(η / D), DA-SLAM's eq. 3.
+    - ``path``: -Δs / s_A. s is the path by odometry, s_A = 0.55/m · A what frontier exploration usually drives in a
+      floor plan whose walls span the area A.
+    - ``uncertainty``: -k_A Δm, k_A = (min(A, 91 m²) / 56 m²)^1.5. m is the mean over the steps of ln max(D, D_0) since
+      the start, as if D had been 1.3e-4, its usual value, for 50 steps before. D_0 is the keyword ``certain_enough``:
+      with the default, the usual value, waiting where the pose is certain earns nothing, and uncertainty only costs. A
+      smaller one rewards every step near the start, also of a robot that stands still: for policies that cannot.
+    - ``collision``: -1 in the step of a collision. In DA-SLAM's presets that step earns nothing else.
 
-    def begin(self, world: int) -> None:
-        """Begin a new episode."""
-        _clear(self.terms, world)
-
-    def grade(self, gain: Floats) -> Floats:
-        """Grade a step."""
-        self.terms = _crash_or(self._core, "completeness", 100.0 * gain)
-        return self.terms["completeness"] + self.terms["collision"]
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """Nothing."""
-        return {}
-
-
-class UncertaintyReward:
-    """DA-SLAM's eq. 3: -100 for a crash, or else 1 + tanh(η / D)."""
-
-    def __init__(self, core: ExplorationCore, eta: float) -> None:
-        self._core, self._eta = core, eta
-        self.terms = {name: np.zeros(core.worlds) for name in ("d_optimality", "collision")}
-
-    def begin(self, world: int) -> None:
-        """Begin a new episode."""
-        _clear(self.terms, world)
-
-    def grade(self, gain: Floats) -> Floats:
-        """Grade a step."""
-        # NumPy's tanh takes another path for the last few of an array: world i would depend on the batch's size
-        certain = np.array([1.0 + math.tanh(self._eta / d) for d in self._core.d_optimality.tolist()])
-        self.terms = _crash_or(self._core, "d_optimality", certain)
-        return self.terms["d_optimality"] + self.terms["collision"]
-
-    def arrays(self) -> dict[str, NDArray[Any]]:
-        """Nothing."""
-        return {}
-
-
-class CombinedReward:
-    """The whole map on a short path with a certain pose (DA-SLAM's future work).
-
-    r = w_completeness Δc - w_path Δs / s_A - w_uncertainty k_A Δm - w_collision · collision
-
-    c is the completeness, s the path by odometry, s_A = 0.55/m · A what frontier exploration usually drives in a floor
-    plan whose walls span the area A, and k_A = (min(A, 91 m²) / 56 m²)^1.5. m is the mean over the steps of
-    ln max(D, D_0) since the start, as if D had been 1.3e-4, its usual value, for 50 steps before. D_0 is the keyword
-    ``certain_enough``: with the default, the usual value, waiting where the pose is certain earns nothing, and
-    uncertainty only costs. A smaller one rewards every step near the start, also of a robot that stands still: for
-    policies that cannot.
-
-    Over an episode the terms add up to what a comparison measures (nearly: it takes the true path, and the mean of ln D
-    without the 50 steps). The area, which the agent is not told, only weighs; with ``observation="da_slam"`` the agent
-    is told the completeness, with ``"map"`` the covariance, too.
+    Over an episode the terms of ``combined`` (DA-SLAM's future work: the whole map on a short path with a certain pose)
+    add up to what a comparison measures, nearly: it takes the true path, and the mean of ln D without the 50 steps. The
+    area, which the agent is not told, only weighs.
 
     Args:
         core: The worlds.
-        weights: By name: ``completeness``, ``path``, ``uncertainty``, ``collision``.
+        chosen: What is paid for.
+        eta: η [m^(4/3) rad^(2/3)].
         certain_enough: D_0 [m^(4/3) rad^(2/3)].
     """
 
-    def __init__(self, core: ExplorationCore, weights: Mapping[str, float], certain_enough: float) -> None:
-        self._core, self._weights, self._enough = core, dict(weights), certain_enough
+    def __init__(self, core: "ExplorationCore", chosen: ChosenReward, eta: float, certain_enough: float) -> None:
+        self._core, self._chosen, self._eta, self._enough = core, chosen, eta, certain_enough
         worlds = core.worlds
         self._path, self._log_mean = np.zeros(worlds), np.zeros(worlds)
         self._steps = np.zeros(worlds, np.int64)
-        self.terms = {name: np.zeros(worlds) for name in self._weights}
+        self._gain = np.zeros(worlds)
+        self._weighing = {
+            "completeness": self._completeness,
+            "d_optimality": self._certainty,
+            "path": self._driven,
+            "uncertainty": self._uncertainty,
+            "collision": self._collision,
+        }
 
     def begin(self, world: int) -> None:
-        """Begin a new episode."""
+        """Begin a new episode in a world that has been reset."""
         self._path[world] = self._core.sensors.path_length[world]
         self._log_mean[world] = math.log(max(CERTAIN_ENOUGH, self._enough))
         self._steps[world] = USUAL_STEPS
-        _clear(self.terms, world)
 
-    def grade(self, gain: Floats) -> Floats:
-        """Grade a step."""
-        core, weights = self._core, self._weights
-        area, path = core.floors.areas[core.plan], core.sensors.path_length
-        size = (np.minimum(area, LARGEST_AREA) / ORDINARY_AREA) ** SIZE_POWER
-        self._steps += 1
-        log_d = np.array([math.log(max(d, self._enough)) for d in core.d_optimality.tolist()])  # as with tanh above
-        change = (log_d - self._log_mean) / self._steps
-        self.terms = {
-            "completeness": weights["completeness"] * gain,
-            "path": -weights["path"] * (path - self._path) / (USUAL_PATH_PER_AREA * area),
-            "uncertainty": -weights["uncertainty"] * size * change,
-            "collision": np.where(core.sensors.collision, -weights["collision"], 0.0),
-        }
+    def weigh(self, gain: Floats) -> dict[str, Floats]:
+        """Return the terms of the step that all worlds have taken, each times its weight, (worlds,).
+
+        Args:
+            gain: (worlds,) of completeness.
+        """
+        self._gain = gain
+        terms = {name: self._weighing[name](weight) for name, weight in self._chosen.weights.items()}
+        if self._chosen.preset in _CRASH_REPLACES:
+            alive = ~self._core.sensors.collision
+            terms = {n: term if n == "collision" else np.where(alive, term, 0.0) for n, term in terms.items()}
+        return terms
+
+    def _completeness(self, weight: float) -> Floats:
+        return weight * self._gain
+
+    def _certainty(self, weight: float) -> Floats:
+        # NumPy's tanh takes another path for the last few of an array: world i would depend on the batch's size
+        return weight * np.array([1.0 + math.tanh(self._eta / d) for d in self._core.d_optimality.tolist()])
+
+    def _driven(self, weight: float) -> Floats:
+        path = self._core.sensors.path_length
+        made: Floats = -weight * (path - self._path) / (USUAL_PATH_PER_AREA * self._core.floors.areas[self._core.plan])
         self._path[:] = path
+        return made
+
+    def _uncertainty(self, weight: float) -> Floats:
+        size = (np.minimum(self._core.floors.areas[self._core.plan], LARGEST_AREA) / ORDINARY_AREA) ** SIZE_POWER
+        self._steps += 1
+        log_d = np.array([math.log(max(d, self._enough)) for d in self._core.d_optimality.tolist()])  # as with tanh
+        change = (log_d - self._log_mean) / self._steps
         self._log_mean += change
-        total = self.terms["completeness"] + self.terms["path"]
-        return total + self.terms["uncertainty"] + self.terms["collision"]
+        made: Floats = -weight * size * change
+        return made
+
+    def _collision(self, weight: float) -> Floats:
+        return np.where(self._core.sensors.collision, -weight, 0.0)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """The path so far, and the mean."""
+        """What later rewards depend on, by name; a view, to be written to when a state is loaded."""
+        if not {"path", "uncertainty"} & self._chosen.weights.keys():
+            return {}
         return {"reward_path": self._path, "reward_log_mean": self._log_mean, "reward_steps": self._steps}
-
-
-def make_reward(core: ExplorationCore, options: ExplorationOptions) -> Reward:
-    """Make what the keyword ``reward`` names."""
-    if options.reward == "combined":
-        return CombinedReward(core, options.combined_weights, options.certain_enough)
-    return UncertaintyReward(core, options.eta) if options.reward == "d_optimality" else CompletenessReward(core)
-
-
-def _crash_or(core: ExplorationCore, name: str, gain: Floats) -> dict[str, Floats]:
-    """The terms of a reward of DA-SLAM: a gain, or in its place the crash."""
-    alive = ~core.sensors.collision
-    return {name: np.where(alive, gain, 0.0), "collision": np.where(alive, 0.0, CRASH_REWARD)}
-
-
-def _clear(terms: dict[str, Floats], world: int) -> None:
-    for term in terms.values():
-        term[world] = 0.0

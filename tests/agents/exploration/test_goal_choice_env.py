@@ -29,7 +29,7 @@ def test_gymnasium_finds_nothing_to_complain_about() -> None:
 def episode(**weights: float) -> tuple[float, dict, dict, list[float]]:
     """Sum of the rewards with these weights alone, first and last info, and D-optimality at every decision."""
     only = dict.fromkeys(("path", "uncertainty", "completeness", "collision"), 0.0)
-    env = GoalChoiceEnv(map=MAZE, weights=only | weights, certain_enough=1e-9, max_episode_steps=400)
+    env = GoalChoiceEnv(map=MAZE, reward=only | weights, certain_enough=1e-9, max_episode_steps=400)
     _, start = env.reset(seed=1)
     seen: list[float] = []
     step = env._world.step
@@ -58,8 +58,8 @@ def test_rewards_are_what_their_weights_say() -> None:
 
 
 def test_unknown_weights_are_refused() -> None:
-    with pytest.raises(ConfigError, match=r"unknown weight 'paht'; did you mean 'path'"):
-        GoalChoiceEnv(map=MAZE, weights={"paht": 1.0})
+    with pytest.raises(ConfigError, match=r"unknown term 'paht' of the reward; did you mean 'path'"):
+        GoalChoiceEnv(map=MAZE, reward={"preset": "combined", "paht": 1.0})
 
 
 def rows(count: int) -> torch.Tensor:

@@ -162,7 +162,7 @@ def test_proximity_is_the_radius_over_the_range() -> None:
 
 def test_reward_terms_are_weighted_by_keywords() -> None:
     weights = {"progress": 2.0, "time": 0.5, "clearance": 3.0, "turn": 4.0}
-    env = ArenaEnv(arena=PILLAR, start=(43.0, 50.0), **{f"{term}_weight": weight for term, weight in weights.items()})
+    env = ArenaEnv(arena=PILLAR, start=(43.0, 50.0), reward={"preset": "default", **weights})
     env.reset(seed=0)
     _, reward, _, _, info = env.step(np.array([0.5], np.float32))
     terms = info["reward_terms"]
@@ -279,7 +279,7 @@ def test_bad_discrete_actions_are_refused(action: object) -> None:
         ({"speed": float("nan")}, "speed = nan"),
         ({"goal_radius": -1.0}, "goal_radius"),
         ({"max_range": 0.0}, "max_range"),
-        ({"progress_weight": -1.0}, "progress_weight"),
+        ({"reward": {"progress": -1.0}}, "reward.progress"),
         ({"max_episode_steps": 0}, "max_episode_steps"),
         ({"density": 0.5}, "density = 0.5"),
         ({"density": []}, "density"),

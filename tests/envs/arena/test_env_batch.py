@@ -16,7 +16,12 @@ STEPS = 120
 KEYWORDS: list[dict[str, Any]] = [
     {"arena": "random", "density": 0.22, "arenas": 9},
     {"arena": ["yang:u", "random:3", "u_trap"], "action": "discrete", "lidar_noise": 0.1},
-    {"arena": "random", "expose_truth": True, "knowledge": "lidar", "turn_weight": 1.0, "clearance_weight": 1.0},
+    {
+        "arena": "random",
+        "expose_truth": True,
+        "knowledge": "lidar",
+        "reward": {"preset": "default", "turn": 1.0, "clearance": 1.0},
+    },
 ]
 
 

@@ -7,15 +7,13 @@ import pytest
 from numpy.typing import NDArray
 
 from lidarena.envs import corridor_v0
-from lidarena.envs.corridor.episodes import TERMS, CorridorEpisodes
+from lidarena.envs.corridor.episodes import CorridorEpisodes
+from lidarena.envs.corridor.rewards import REWARDS
 from tests.envs.corridor.corridor_worlds import EXACT, begin
 
 AHEAD = {"robots": 3, "starts": [(2.0, 7.5), (6.0, 7.5), (12.0, 7.5)], "goals": [(3.0, 7.5), (17.0, 7.5), (9.0, 7.5)]}
 """Robot 0 is soon there; robots 1 and 2 meet on the way, if they drive ahead."""
-WEIGHTS: dict[str, float] = {
-    "progress_weight": 1.5, "arrival_weight": 7.0, "collision_weight": 4.0, "time_weight": 0.3,
-    "closeness_weight": 2.0, "turning_weight": 0.25,
-}  # fmt: skip
+WEIGHTS = {"progress": 1.5, "arrival": 7.0, "collision": 4.0, "time": 0.3, "closeness": 2.0, "turning": 0.25}
 
 
 def step(episodes: CorridorEpisodes, speed: float = 1.0, turn: float = 0.0) -> tuple[NDArray[Any], ...]:
@@ -23,9 +21,9 @@ def step(episodes: CorridorEpisodes, speed: float = 1.0, turn: float = 0.0) -> t
 
 
 def test_the_terms_add_up_to_the_reward_and_are_what_they_say() -> None:
-    episodes = begin(2, robots=6, map="unstructured", places="random", radius=0.2, **WEIGHTS)
+    episodes = begin(2, robots=6, map="unstructured", places="random", radius=0.2, reward=WEIGHTS)
     core, rng = episodes.core, np.random.default_rng(3)
-    earned = dict.fromkeys(TERMS, 0.0)
+    earned = dict.fromkeys(REWARDS.names, 0.0)
     for _ in range(60):
         before, active, headings = (
             core.measurements.remaining.copy(),
@@ -34,7 +32,7 @@ def test_the_terms_add_up_to_the_reward_and_are_what_they_say() -> None:
         )
         rewards, _, _ = episodes.step(rng.uniform((0.2, -0.6), 1.0, (2, 6, 2)))
         terms = episodes.robot_infos()["reward_terms"]
-        assert tuple(terms) == TERMS
+        assert tuple(terms) == REWARDS.names
         assert np.allclose(sum(terms.values()), rewards, atol=1e-12)
         turned = np.abs(np.angle(np.exp(1j * (core.physics.poses[..., 2] - headings))))
         touched = core.physics.touched_wall | core.physics.touched_robot
@@ -50,7 +48,7 @@ def test_the_terms_add_up_to_the_reward_and_are_what_they_say() -> None:
         for name, term in terms.items():
             assert np.allclose(term, np.where(active, expected[name], 0.0), atol=1e-9), name
             earned[name] += float(np.abs(term).sum())
-    assert all(earned[name] > 0.0 for name in TERMS if name != "arrival")
+    assert all(earned[name] > 0.0 for name in REWARDS.names if name != "arrival")
 
 
 def test_progress_over_an_episode_is_the_way_that_was_made() -> None:

@@ -89,7 +89,7 @@ def test_a_robot_that_arrives_is_rewarded_and_finished():
 def test_rewards_follow_their_weights():
     total = {}
     for weight in (1.0, 3.0):
-        env = make(time_weight=weight, progress_weight=0.0)
+        env = make(reward={"preset": "default", "time": weight, "progress": 0.0})
         env.reset(seed=1)
         total[weight] = drive(env, (0.0, 0.0), 5)[-1][1]["robot_0"]
     assert total == {1.0: pytest.approx(-0.2), 3.0: pytest.approx(-0.6)}

@@ -22,10 +22,10 @@ def test_gymnasium_finds_nothing_to_complain_about(name: str) -> None:
     "keywords",
     [
         {"observation": "sectors"},
-        {"observation": "compass"},
+        {"observation": "frontier_histogram"},
         {"observation": "map"},
         {"observation": "map", "action": "continuous", "reward": "combined"},
-        {"reward": "d_optimality", "action": "continuous"},
+        {"reward": "d_optimality", "observation": "da_slam_entropy", "action": "continuous"},
         {"slam": "truth", "render_mode": "rgb_array"},
         {"map": "maze:4", "start": "random", "particles": 5},
     ],
@@ -81,7 +81,7 @@ def test_driving_into_a_wall_ends_the_episode_with_the_crash_reward() -> None:
 
 
 def test_the_uncertainty_reward_is_equation_three() -> None:
-    env = gym.make("lidarena/Env2-v0", reward="d_optimality", eta=1e-4)
+    env = gym.make("lidarena/Env2-v0", reward="d_optimality", observation="da_slam_entropy", eta=1e-4)
     observation, _ = env.reset(seed=0)
     for _ in range(5):
         observation, reward, _, _, info = env.step(1)
@@ -202,12 +202,13 @@ def test_stepping_before_reset_is_refused(make: type) -> None:
         ({"slam": "gmapping"}, "slam"),
         ({"expose_truth": 1}, "expose_truth"),
         ({"map": []}, "map"),
-        ({"reward": "combined", "weights": {"paht": 1}}, "unknown weight 'paht'; did you mean 'path'"),
-        ({"reward": "combined", "weights": {"path": -1}}, "weights.path = -1 is out of range"),
-        ({"reward": "combined", "weights": {"path": "long"}}, "weights.path = 'long' is out of range"),
-        ({"reward": "combined", "weights": 2.0}, "weights = 2.0 must be numbers by name"),
+        ({"reward": {"paht": 1}}, "unknown term 'paht' of the reward; did you mean 'path'"),
+        ({"reward": {"path": -1}}, "reward.path = -1 is out of range"),
+        ({"reward": {"path": "long"}}, "reward.path = 'long' is out of range"),
+        ({"reward": 2.0}, "reward = 2.0 must be a function of a step, weights by term, or one of"),
+        ({"reward": "combined", "weights": 2.0}, "weights = 2.0 is given as reward = "),
         ({"reward": "combined", "certain_enough": 0}, "certain_enough = 0 is out of range"),
-        ({"weights": {"path": 1.0}}, "weights = .* are for reward='combined', not 'completeness'"),
+        ({"weights": {"path": 1.0}}, "weights = .* went with reward = 'combined'"),
     ],
 )
 def test_bad_keywords_are_refused_in_one_sentence(keywords: dict, message: str) -> None:
@@ -252,11 +253,11 @@ def test_absurd_patience_is_refused(value: object) -> None:
 
 def test_the_compass_shows_the_same_hits_as_the_sectors_and_its_needle_turns_with_the_robot() -> None:
     observed = {}
-    for kind in ("sectors", "compass"):
+    for kind in ("sectors", "frontier_histogram"):
         env = gym.make("lidarena/Env3-v0", observation=kind)
         env.reset(seed=5)
         observed[kind] = [env.step(action)[0] for action in (0, 1, 1, 1, 2, 0)]
-    for sectors, compass in zip(observed["sectors"], observed["compass"], strict=True):
+    for sectors, compass in zip(observed["sectors"], observed["frontier_histogram"], strict=True):
         assert compass.shape == (76,)
         near = np.minimum(0.12 / np.maximum(3.5 * sectors[:36], 1e-6), 1.0)
         np.testing.assert_allclose(compass[:36], near, rtol=1e-5)

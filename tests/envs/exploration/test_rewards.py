@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 import lidarena
-from lidarena.envs.exploration.options import CERTAIN_ENOUGH, COMBINED_WEIGHTS
-from lidarena.envs.exploration.rewards import USUAL_STEPS
+from lidarena.envs.exploration.rewards import CERTAIN_ENOUGH, REWARDS, USUAL_STEPS
 
+COMBINED_WEIGHTS = REWARDS.presets["combined"]
 MAZE = "maze:3?width=6&height=7"
 AREA = 42.0
 
@@ -55,14 +55,14 @@ def test_the_terms_add_up_to_what_is_measured(enough: float) -> None:
 def test_weights_scale_their_terms_and_leave_the_drive_alone() -> None:
     _, plain = drive(gym.make("lidarena/Exploration-v0", map=MAZE, reward="combined"))
     weights = {"path": 2 * COMBINED_WEIGHTS["path"], "uncertainty": 0.0}
-    _, other = drive(gym.make("lidarena/Exploration-v0", map=MAZE, reward="combined", weights=weights))
+    _, other = drive(gym.make("lidarena/Exploration-v0", map=MAZE, reward={"preset": "combined", **weights}))
     before, after = terms(plain), terms(other)
     assert after["path"] == pytest.approx(2 * before["path"]) and after["uncertainty"] == 0.0
     assert after["completeness"] == before["completeness"]
 
 
 def test_a_collision_costs_its_weight_and_takes_nothing_else_away() -> None:
-    env = gym.make("lidarena/Env1-v0", reward="combined", weights={"collision": 7.0})
+    env = gym.make("lidarena/Env1-v0", reward={"preset": "combined", "collision": 7.0})
     env.reset(seed=0)
     ended, info = False, {}
     while not ended:

@@ -114,8 +114,8 @@ def test_where_there_is_no_entropy_the_map_observation_tells_none() -> None:
 @pytest.mark.parametrize("slam", ["odometry", RayMapper])
 def test_an_observation_of_the_entropy_needs_one(slam: Any) -> None:
     with pytest.raises(ConfigError, match=r"slam = '(odometry|RayMapper)' has no entropy"):
-        ExplorationEnv(map="env1", slam=slam, reward="d_optimality")
-    assert ExplorationEnv(map="env1", slam="truth", reward="d_optimality").reset(seed=0)[0][-1] == 0.0
+        ExplorationEnv(map="env1", slam=slam, observation="da_slam_entropy")
+    assert ExplorationEnv(map="env1", slam="truth", observation="da_slam_entropy").reset(seed=0)[0][-1] == 0.0
 
 
 def test_ealc_says_which_uncertainty_there_is() -> None:

@@ -1,0 +1,54 @@
+"""What a step in an arena is worth."""
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.rewards import Floats, RewardTerms
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from lidarena.envs.arena.state import ArenaCore
+
+REWARDS = RewardTerms(
+    ("progress", "success", "collision", "time", "clearance", "turn"),
+    {
+        "default": {
+            "progress": 1.0,
+            "success": 10.0,
+            "collision": 10.0,
+            "time": 0.1,
+            "clearance": 0.0,
+            "turn": 0.0,
+        }
+    },
+)
+"""``progress`` is the approach to the goal over the length of a step, ``success`` 1 once, ``collision`` -1 once,
+``time`` -1 each step, ``clearance`` from 0 at two steps' length from the nearest surface to -1 at contact, ``turn`` -1
+for half a turn."""
+
+
+def weigh_terms(
+    core: "ArenaCore", weights: "Mapping[str, float]", before: Floats, success: NDArray[np.bool_]
+) -> dict[str, Floats]:
+    """Return the terms of the last step, each times its weight, (worlds,).
+
+    Only additions and products, which no vector unit rounds otherwise.
+
+    Args:
+        core: The worlds.
+        weights: By term.
+        before: (worlds,) distances to the goal before the step [m].
+        success: (worlds,) whether the goal is reached.
+    """
+    values = {
+        "progress": (before - core.measurements.distance) / core.step_length,
+        "success": success.astype(np.float64),
+        "collision": -core.physics.touched.astype(np.float64),
+        "time": np.full(core.worlds, -1.0),
+        "clearance": np.clip(core.measurements.gap / core.approach, 0.0, 1.0) - 1.0,
+        "turn": -np.abs(core.turns - 2.0 * np.pi * np.rint(core.turns / (2.0 * np.pi))) / np.pi,
+    }
+    return {term: weight * values[term] for term, weight in weights.items()}
