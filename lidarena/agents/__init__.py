@@ -20,9 +20,11 @@ if TYPE_CHECKING:
     from lidarena.agents.shipped import pretrained
     from lidarena.agents.training import train
     from lidarena.agents.training_config import TrainingConfig
+    from lidarena.agents.vec_env import BatchVecEnv
     from lidarena.base.yaml_config import ConfigModel, dump_config, load_config
 
 __all__ = [
+    "BatchVecEnv",
     "ConfigModel",
     "LearnedPolicy",
     "TrainingConfig",
@@ -37,6 +39,7 @@ __all__ = [
 ]
 
 _HOMES = {
+    "BatchVecEnv": "lidarena.agents.vec_env",
     "ConfigModel": "lidarena.base.yaml_config",
     "LearnedPolicy": "lidarena.agents.learned_policy",
     "TrainingConfig": "lidarena.agents.training_config",
