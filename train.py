@@ -10,7 +10,8 @@ import sys
 
 from lidarena import agents
 from lidarena.agents.learner_config import PPOConfig
-from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
+from lidarena.agents.run_folder import config_of
+from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.errors import LidarenaError
 from lidarena.base.terminal import make_output_printable
 
@@ -48,10 +49,10 @@ def main(arguments: list[str] | None = None) -> int:
 
 
 def _config(options: argparse.Namespace) -> TrainingConfig:
-    file = options.config or f"{options.resume}/{CONFIG_FILE}"
-    return agents.load_config(
-        file, TrainingConfig, [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
-    )
+    overrides = [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
+    if options.config:
+        return agents.load_config(options.config, TrainingConfig, overrides)
+    return config_of(options.resume, overrides)
 
 
 def _summary(config: TrainingConfig) -> str:

@@ -44,7 +44,10 @@ Arrays = dict[str, NDArray[Any]]
 KEPT = 2
 """Checkpoints that stay in the folder of a training that goes on: the newest, and one before it."""
 
-_VERSION = 3
+_VERSION = 4
+_VERSION_0_1 = 3
+"""Of Lidarena 0.1, whose keywords of the environment had other names."""
+_KEYWORDS = "env.keywords."
 _FILES = ("model.safetensors", "worlds.npz", "trainer.npz", "trainer.json")
 _MEMORY = "memory.npz"
 
@@ -136,11 +139,12 @@ def lost_worlds(model: BaseAlgorithm) -> str | None:
 
 def _check(folder: Path, about: Mapping[str, Any], made_with: Mapping[str, Any]) -> None:
     """Refuse a checkpoint of another version or configuration, and files that are not those that were saved."""
-    if about["version"] != _VERSION:
+    if about["version"] not in (_VERSION, _VERSION_0_1):
         raise ConfigError(f"the checkpoint {str(folder)!r} is of version {about['version']}, not {_VERSION}")
     saved, wanted = about["made_with"], json.loads(json.dumps(dict(made_with)))
     for key in sorted(saved.keys() | wanted.keys()):
-        if saved.get(key) != wanted.get(key):
+        renamed = about["version"] == _VERSION_0_1 and f"{key}.".startswith(_KEYWORDS)
+        if not renamed and saved.get(key) != wanted.get(key):
             raise ConfigError(
                 f"the checkpoint {str(folder)!r} is of another training, made with {key} = {saved.get(key)!r} where "
                 f"this one has {wanted.get(key)!r}"

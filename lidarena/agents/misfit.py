@@ -31,8 +31,8 @@ def check_family(learned: LearnedPolicy, env: Any, origin: str) -> None:
 def check_options(learned: LearnedPolicy, env: Any, origin: str) -> None:
     """Refuse an environment whose observations or actions mean something else, even where they have the same shape.
 
-    The environment's ``options`` are compared with those that the agent's keywords give; of an environment that has
-    none nothing is known.
+    The environment's ``options`` are compared with those that the agent's keywords give, as far as they are not left
+    to the environment (None); of an environment that has none nothing is known.
 
     Raises:
         PolicyFileError: It names what differs, and the keywords that make it right.
@@ -45,7 +45,7 @@ def check_options(learned: LearnedPolicy, env: Any, origin: str) -> None:
     if trained is None:
         return
     pairs = {name: (_value(trained, name), _value(owner.options, name)) for name in names}
-    odd = {name: pair for name, pair in pairs.items() if pair[0] != pair[1]}
+    odd = {name: pair for name, pair in pairs.items() if pair[0] not in (None, pair[1])}
     if odd:
         wanted, found = (" and ".join(f"{name} {pair[side]!r}" for name, pair in odd.items()) for side in (0, 1))
         raise PolicyFileError(

@@ -1,5 +1,6 @@
 """Run folders: which one a training gets, and whether an old one can go on."""
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -8,7 +9,8 @@ from lidarena.agents.learning_curve import FILE as CURVE_FILE
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.base.errors import ConfigError
 from lidarena.base.files import next_free
-from lidarena.base.yaml_config import load_config
+from lidarena.base.yaml_config import check_config, read_yaml
+from lidarena.envs.registration import keywords_of_version_0_1
 
 POLICY_FILES = ("policy.safetensors", "policy.json")
 """What `lidarena.agents.load` reads."""
@@ -48,8 +50,15 @@ def claim(out: str | Path, exact: bool = False) -> Path:
     return candidate
 
 
-def config_of(folder: str | Path) -> TrainingConfig:
+def config_of(folder: str | Path, overrides: Sequence[str] = ()) -> TrainingConfig:
     """Read the configuration of a run folder.
+
+    A run of version 0.1, which had one algorithm and so did not name it, gets the environment that it had under the
+    keywords of today.
+
+    Args:
+        folder: Of the run.
+        overrides: ``key.sub=value`` each, see `load_config`.
 
     Raises:
         ConfigError: The folder does not exist or is no run folder.
@@ -59,7 +68,11 @@ def config_of(folder: str | Path) -> TrainingConfig:
         raise ConfigError(f"there is no run folder {str(path)!r} to go on with")
     if not (path / CONFIG_FILE).exists():
         raise ConfigError(f"the folder {str(path)!r} lacks {CONFIG_FILE}, so it is no run folder")
-    return load_config(path / CONFIG_FILE, TrainingConfig)
+    content = read_yaml(path / CONFIG_FILE)
+    env = content.get("env")
+    if "algorithm" not in content and isinstance(env, dict) and isinstance(env.get("keywords"), dict):
+        content["env"] = {**env, "keywords": keywords_of_version_0_1(str(env.get("id")), env["keywords"])}
+    return check_config(content, TrainingConfig, overrides, origin=str(path / CONFIG_FILE))
 
 
 def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path | None:

@@ -26,7 +26,7 @@ def test_without_an_environment_it_is_the_network() -> None:
     ("name", "make", "kind"),
     [
         ("arena", lambda: gym.make("lidarena/Arena-v0", **ARENA), LearnedPolicy),
-        ("compass", lambda: gym.make("lidarena/Env2-v0", observation="compass"), LearnedPolicy),
+        ("compass", lambda: gym.make("lidarena/Env2-v0", observation="frontier_histogram"), LearnedPolicy),
         ("combined", lambda: gym.make("lidarena/Env2-v0"), GoalChoiceAgent),
         ("combined", lambda: gym.make("lidarena/Env2-v0", observation="map", action="continuous"), GoalChoiceAgent),
         ("combined", lambda: gym.make("lidarena/GoalChoice-v0", map="env2"), LearnedPolicy),
@@ -109,7 +109,7 @@ def test_the_same_shape_is_not_the_same_observation() -> None:
 
 
 def test_keywords_that_are_only_of_the_training_do_not_matter() -> None:
-    env = gym.make("lidarena/Arena-v0", **ARENA, clearance_weight=0.7, density=0.1)
+    env = gym.make("lidarena/Arena-v0", **ARENA, reward={"progress": 2.0}, density=0.1)
     learned = agents.load("pretrained:arena")
     learned.env_keywords = {**learned.env_keywords, "arena": "barn", "path": "/not/here", "speed": -3}
     assert agents.ready(learned, env) is learned

@@ -5,9 +5,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+import yaml
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from lidarena.agents import TrainingStopped, checkpoint, train
+from lidarena.agents.run_folder import config_of
 from lidarena.base.errors import ConfigError
 from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
 
@@ -89,6 +91,26 @@ def test_worlds_that_cannot_be_written_down_start_over(tmp_path: Path) -> None:
     folder = train(config, progress=False)
     train(resume=folder, config=config.model_copy(update={"total_steps": 256}), progress=False)
     assert [int(row["step"]) for row in curve(folder)] == [64, 128, 192, 256]
+
+
+def test_a_run_of_version_0_1_goes_on_with_the_observations_that_it_had(tmp_path: Path) -> None:
+    keywords = "{particles: 5, max_episode_steps: 20, reward: d_optimality, observation: da_slam_entropy}"
+    overrides = ("env.id=lidarena/Env1-v0", f"env.keywords={keywords}", "num_envs=2")
+    straight = train(small(tmp_path / "straight", *overrides, "total_steps=96"), progress=False)
+    old = train(small(tmp_path / "old", *overrides, "total_steps=32"), progress=False)
+    content = yaml.safe_load((old / "config.yaml").read_text())
+    del content["algorithm"], content["normalize_observation"], content["env"]["keywords"]["observation"]
+    (old / "config.yaml").write_text(yaml.safe_dump(content))
+    about = next((old / "checkpoints").rglob("trainer.json"))
+    saved = json.loads(about.read_text())
+    del saved["made_with"]["env.keywords.observation"]
+    about.write_text(json.dumps({**saved, "version": 3}))
+    with pytest.warns(DeprecationWarning, match="da_slam_entropy"):
+        config = config_of(old, ["total_steps=96"])
+    with pytest.warns(DeprecationWarning, match="da_slam_entropy"):
+        resumed = train(config, resume=old, progress=False)
+    assert equal(weights(resumed), weights(straight))
+    assert config_of(old) == config  # it is a run of today now
 
 
 @pytest.fixture(scope="module")
