@@ -162,15 +162,29 @@ def scaled_covariance(covariance: NDArray[np.float64]) -> NDArray[np.float32]:
     Args:
         covariance: (worlds, 3, 3) [m, m, rad].
     """
-    rows, columns = np.triu_indices(3, 1)
-    deviations = np.sqrt(np.maximum(np.diagonal(covariance, axis1=1, axis2=2), 0.0))
-    # one by one: NumPy's logarithm takes another path for the last few of an array
-    decades = [[math.log10(max(d, LEAST_DEVIATION) / LEAST_DEVIATION) for d in row] for row in deviations.tolist()]
-    products = deviations[:, rows] * deviations[:, columns]
-    correlations = covariance[:, rows, columns] / np.where(products > 0.0, products, 1.0)
-    both = np.concatenate([np.array(decades) / DECADES, correlations], axis=1)
-    scaled: NDArray[np.float32] = np.clip(both, -1.0, 1.0).astype(np.float32)
+    scaled = np.empty((len(covariance), 6), np.float32)
+    scale_covariances(covariance, scaled)
     return scaled
+
+
+@leaf
+def scale_covariances(covariances: NDArray[np.float64], out: NDArray[np.float32]) -> None:
+    """Write what ``scaled_covariance`` says.
+
+    Args:
+        covariances: (worlds, 3, 3) [m, m, rad].
+        out: (worlds, 6) output.
+    """
+    for w in range(covariances.shape[0]):
+        k = 3
+        for i in range(3):
+            deviation = math.sqrt(max(covariances[w, i, i], 0.0))
+            out[w, i] = min(math.log10(max(deviation, LEAST_DEVIATION) / LEAST_DEVIATION) / DECADES, 1.0)
+            for j in range(i + 1, 3):
+                product = deviation * math.sqrt(max(covariances[w, j, j], 0.0))
+                correlation = covariances[w, i, j] / product if product > 0.0 else 0.0
+                out[w, k] = max(-1.0, min(correlation, 1.0))
+                k += 1
 
 
 def scaled_entropy(core: ExplorationCore) -> NDArray[np.float64]:
