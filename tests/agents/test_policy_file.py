@@ -14,6 +14,7 @@ from stable_baselines3.common.policies import ActorCriticPolicy
 from stable_baselines3.common.torch_layers import FlattenExtractor
 
 from lidarena.agents import load, save_policy
+from lidarena.agents.shipped import resolve
 from lidarena.agents.space_json import from_json, to_json
 from lidarena.agents.vec_env import BatchVecEnv
 from lidarena.base.errors import PolicyFileError
@@ -321,3 +322,14 @@ def test_spaces_survive_json(space: spaces.Space[Any]) -> None:
 def test_other_spaces_cannot_be_written() -> None:
     with pytest.raises(PolicyFileError, match="type Text"):
         to_json(spaces.Text(3))
+
+
+def test_a_file_of_version_0_1_means_what_it_meant(tmp_path: Path) -> None:
+    shipped = resolve("pretrained:uncertainty").parent
+    for name in ("policy.json", "policy.safetensors"):
+        (tmp_path / name).write_bytes((shipped / name).read_bytes())
+    card = json.loads((tmp_path / "policy.json").read_text())
+    card["env"]["keywords"] = {"start": "random", "reward": "d_optimality", "eta": 1.0}
+    (tmp_path / "policy.json").write_text(json.dumps(card | {"version": 1}))
+    with pytest.warns(DeprecationWarning, match="observation = 'da_slam_entropy'"):
+        assert load(tmp_path).env_keywords["observation"] == "da_slam_entropy"

@@ -42,13 +42,16 @@ class ArenaEnv(SingleWorld):
     | beams | distance to the goal over 150 m (to scale), at most 1 | 0 | 1 |
     | beams + 1, + 2 | cosine and sine of the goal's bearing | -1 | 1 |
 
-    ``observation="ranges"`` gives beams over the longest range, ``"proximity"`` the robot's radius over the beam.
+    ``observation="ranges"`` gives beams over the longest range, ``"proximity"`` the robot's radius over the beam;
+    or an observer of one's own, see ``lidarena.envs.observers``.
 
     ## Rewards
 
-    The sum of ``info["reward_terms"]``, each weighted by the keyword ``<term>_weight``:
+    The sum of these terms, each times its weight; ``info["reward_terms"]`` holds them by name. ``reward`` takes
+    ``"default"``, weights by term (``{"preset": "default", "turn": 1.0}`` changes some), or a function of one's own,
+    see ``lidarena.envs.rewards``.
 
-    | Term | Value | Default weight |
+    | Term | Value | `default` |
     |------|-------|------|
     | progress | approach to the goal over the length of a step | 1 |
     | success | 1 where the goal is reached | 10 |
@@ -82,12 +85,42 @@ class ArenaEnv(SingleWorld):
 
     ## Arguments
 
-    See ``ArenaOptions``.
+    In full: ``ArenaOptions``.
+
+    | Name | Type | Default | Meaning |
+    |------|------|---------|---------|
+    | `arena` | str, arena, plan, generator or list | `"random"` | where: one, a family, or a list of these |
+    | `density` | float or list | `0.15` | share of the room that circles of `"random"` arenas cover |
+    | `path` | str or None | `None` | the BARN file, for `"barn"` arenas |
+    | `start` | (x, y) or None | `None` | instead of the arena's own [m] |
+    | `goal` | (x, y) or None | `None` | instead of the arena's own [m]; a floor plan has none |
+    | `arenas` | int | `4096` | how many different arenas of a family episodes draw from |
+    | `pick` | str | `"random"` | which arena a reset takes; `"by_seed"` the one of its seed |
+    | `solvable` | bool | `False` | pass over `"random"` arenas in which A* finds no path |
+    | `action` | str | `"continuous"` | or `"discrete"` |
+    | `observation` | str or observer | `"ranges"` | what is seen, see above |
+    | `beams` | int | `36` | of the lidar |
+    | `max_range` | float or None | `None` | of the lidar [m]; None: 30 m, to scale |
+    | `lidar_noise` | float | `0.0` | standard deviation of a range [m] |
+    | `knowledge` | str | `"map"` | obstacles in the info; `"lidar"` only what the lidar sees |
+    | `speed` | float | `1.0` | of the robot [m/s] |
+    | `decision_period` | float or None | `None` | time between decisions [s]; None: 1 s, to scale |
+    | `goal_radius` | float or None | `None` | distance at which the goal is reached [m]; None: 1 m, to scale |
+    | `max_episode_steps` | int | `500` | truncates; -1 never |
+    | `reward` | str, dict or function | `"default"` | what a step is worth, see above |
+    | `expose_truth` | bool | `False` | give ``info["truth"]``, for evaluation |
+    | `field` | str | `"robust"` | whose potential the picture shows |
+    | `render_mode` | str or None | `None` | or `"rgb_array"` |
 
     ## References
 
     Yang, Yang, Zhang, Chang, Chen, Zhang, A New Method for Robot Path Planning Based Artificial Potential Field, ICIEA
     2016. Perille, Truong, Xiao, Stone, Benchmarking Metric Ground Navigation, SSRR 2020.
+
+    ## Version History
+
+    - v0: since Lidarena 0.1. Since 0.2 weights of the reward are given in ``reward``, and the info's ``robot_radius``
+      is called ``radius``.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 10}  # noqa: RUF012 - as gym.Env has it

@@ -120,7 +120,18 @@ class CorridorCentralEnv(SingleWorld):
 
     ## Rewards
 
-    The sum of the robots' rewards; ``info["reward_terms"]`` holds the terms by name, summed over the robots.
+    The sum of the robots' rewards, each of which is the sum of these terms times their weights as long as the robot is
+    on its way; ``info["reward_terms"]`` holds them by name, summed over the robots. ``reward`` is as in
+    ``corridor_v0``.
+
+    | Term | Value | `default` |
+    |------|-------|------|
+    | progress | metres by which the way to the goal became shorter | 1 |
+    | arrival | 1 on arrival | 10 |
+    | collision | -1 where something is touched | 10 |
+    | time | minus the seconds | 0.1 |
+    | closeness | minus the seconds times max(0, 1 - gap / 2 radii), of the gap to the nearest thing | 0 |
+    | turning | minus the radians turned | 0 |
 
     ## Starting state
 
@@ -134,7 +145,8 @@ class CorridorCentralEnv(SingleWorld):
     ## Info
 
     By robot: ``pose`` (robots, 3) as localisation gives it, ``goal`` (robots, 2), ``remaining`` length of the way [m],
-    ``success`` (it has arrived), ``finished``, ``collision``, ``path_length`` [m]. Of the team: ``time`` [s],
+    ``success`` (it has arrived), ``finished``, ``collision``, ``path_length`` [m], ``scan`` (robots,
+    beams) measured ranges [m]. Of the team: ``time`` [s],
     ``reward_terms``, ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), the
     robots' ``radius`` [m]; ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``,
     ``makespan`` and ``mean_time`` [s]. With ``expose_truth=True`` also ``truth``: ``pose`` (robots, 3) and
@@ -142,12 +154,42 @@ class CorridorCentralEnv(SingleWorld):
 
     ## Arguments
 
-    See ``CorridorOptions``.
+    In full: ``CorridorOptions``.
+
+    | Name | Type | Default | Meaning |
+    |------|------|---------|---------|
+    | `map` | str, plan or generator | `"office"` | floor plan |
+    | `robots` | int | `4` | size of the team |
+    | `places` | str or None | `None` | `"predefined"`, `"random"` or a `.scen` file; None: predefined if it can be |
+    | `starts` | (robots, 2) or None | `None` | x, y [m] in place of `places`; with `goals` |
+    | `goals` | (robots, 2) or None | `None` | x, y [m] |
+    | `action` | str | `"continuous"` | or `"discrete"` |
+    | `radius` | float | `0.105` | of every robot [m] |
+    | `beams` | int | `36` | of every robot's lidar |
+    | `lidar_range` | float | `3.5` | [m] |
+    | `lidar_noise` | float | `0.01` | standard deviation of a range [m] |
+    | `neighbours` | int | `0` | how many of the nearest robots tell where they are and how they move |
+    | `motion_noise` | float | `1.0` | factor on the noise of the wheels; 0: they obey |
+    | `localization_noise` | float | `0.02` | standard deviation of the poses in the info [m], [rad] |
+    | `stall_rate` | float | `0.0` | how often a robot is held up for some 3 s [1/s] |
+    | `decision_period` | float | `0.2` | time between decisions [s] |
+    | `goal_tolerance` | float | `0.15` | distance from the goal at which a robot has arrived [m] |
+    | `collision_ends` | bool | `True` | whether a robot that touches something is finished |
+    | `max_episode_steps` | int | `1000` | truncates; -1 never |
+    | `observation` | str or observer | `"ranges"` | what each robot sees, see above |
+    | `reward` | str, dict or function | `"default"` | what a step of each robot is worth, see above |
+    | `expose_truth` | bool | `False` | give ``info["truth"]``, for evaluation |
+    | `render_mode` | str or None | `None` | or `"rgb_array"`, `"human"` |
 
     ## References
 
     Bennewitz & Burgard, A probabilistic method for planning collision-free trajectories of multiple mobile robots,
     2000.
+
+    ## Version History
+
+    - v0: since Lidarena 0.1. Since 0.2 weights of the reward are given in ``reward``, and the info tells ``pose``,
+      ``goal``, ``success``, ``collision`` and ``path_length`` of the robots by these names, as arrays.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "human"], "render_fps": 5}  # noqa: RUF012

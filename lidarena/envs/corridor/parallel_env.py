@@ -84,9 +84,18 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
 
     ## Rewards
 
-    A sum of terms, each times its keyword ``…_weight``: ``progress`` (1), ``arrival`` (10), ``collision`` (10),
-    ``time`` (0.1), ``closeness`` (0) and ``turning`` (0), see ``CorridorEpisodes``. ``info["reward_terms"]`` holds them
-    by name.
+    The sum of these terms, each times its weight; ``info["reward_terms"]`` holds them by name. ``reward`` takes
+    ``"default"``, weights by term (``{"preset": "default", "turning": 1.0}`` changes some), or a function of one's own,
+    which is asked about each robot on its way, see ``lidarena.envs.rewards``.
+
+    | Term | Value | `default` |
+    |------|-------|------|
+    | progress | metres by which the way to the goal became shorter | 1 |
+    | arrival | 1 on arrival | 10 |
+    | collision | -1 where something is touched | 10 |
+    | time | minus the seconds | 0.1 |
+    | closeness | minus the seconds times max(0, 1 - gap / 2 radii), of the gap to the nearest thing | 0 |
+    | turning | minus the radians turned | 0 |
 
     ## Starting state
 
@@ -105,16 +114,46 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
     By agent: ``pose`` (3,) as localisation gives it, ``goal`` (2,), ``remaining`` length of its way [m], ``success``
     (it has arrived), ``collision``, ``path_length`` [m], ``time`` [s]; ``reward_progress`` and so on, the terms one by
     one, which ``info["reward_terms"]`` gathers; ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution``
-    [m], ``origin`` (2,), ``radius`` of the robots [m].
+    [m], ``origin`` (2,), ``radius`` of the robots [m], ``scan`` (beams,) measured ranges [m].
 
     ## Arguments
 
-    ``max_cycles``, and all others of ``CorridorOptions``.
+    In full: ``CorridorOptions``.
+
+    | Name | Type | Default | Meaning |
+    |------|------|---------|---------|
+    | `max_cycles` | int | `1000` | truncates; -1 never |
+    | `map` | str, plan or generator | `"office"` | floor plan |
+    | `robots` | int | `4` | size of the team |
+    | `places` | str or None | `None` | `"predefined"`, `"random"` or a `.scen` file; None: predefined if it can be |
+    | `starts` | (robots, 2) or None | `None` | x, y [m] in place of `places`; with `goals` |
+    | `goals` | (robots, 2) or None | `None` | x, y [m] |
+    | `action` | str | `"continuous"` | or `"discrete"` |
+    | `radius` | float | `0.105` | of every robot [m] |
+    | `beams` | int | `36` | of every robot's lidar |
+    | `lidar_range` | float | `3.5` | [m] |
+    | `lidar_noise` | float | `0.01` | standard deviation of a range [m] |
+    | `neighbours` | int | `0` | how many of the nearest robots tell where they are and how they move |
+    | `motion_noise` | float | `1.0` | factor on the noise of the wheels; 0: they obey |
+    | `localization_noise` | float | `0.02` | standard deviation of the poses in the info [m], [rad] |
+    | `stall_rate` | float | `0.0` | how often a robot is held up for some 3 s [1/s] |
+    | `decision_period` | float | `0.2` | time between decisions [s] |
+    | `goal_tolerance` | float | `0.15` | distance from the goal at which a robot has arrived [m] |
+    | `collision_ends` | bool | `True` | whether a robot that touches something is finished |
+    | `observation` | str or observer | `"ranges"` | what each robot sees, see above |
+    | `reward` | str, dict or function | `"default"` | what a step of each robot is worth, see above |
+    | `expose_truth` | bool | `False` | give ``info["truth"]``, for evaluation |
+    | `render_mode` | str or None | `None` | or `"rgb_array"`, `"human"` |
 
     ## References
 
     Bennewitz & Burgard, A probabilistic method for planning collision-free trajectories of multiple mobile robots,
     2000.
+
+    ## Version History
+
+    - v0: since Lidarena 0.1. Since 0.2 weights of the reward are given in ``reward``, and the info calls
+      ``arrived`` ``success`` and tells the terms of the reward one by one.
     """
 
     metadata: dict[str, Any] = {  # noqa: RUF012 - as PettingZoo declares it

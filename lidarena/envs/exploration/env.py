@@ -65,18 +65,25 @@ class ExplorationEnv(SingleWorld):
     ``"da_slam_entropy"``, ``"sectors_entropy"`` and ``"frontier_histogram_entropy"`` hold the entropy of the particles'
     weights / ln N in place of the completeness, as DA-SLAM's agent for uncertainty sees it.
 
-    ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``.
+    ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``. Or an
+    observer of one's own, see ``lidarena.envs.observers``.
 
     ## Rewards
 
-    - ``reward="completeness"`` (eq. 2): -100 on a collision, else the gain in map completeness in percentage points.
-      Completeness is the known share of K, the cells that the robot can come to know (``measure_coverage``).
-    - ``reward="d_optimality"`` (eq. 3): -100 on a collision, else 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's
-      covariance.
-    - ``reward="combined"``: what a comparison measures, all at once: completeness - path - mean of ln D - collisions,
-      weighed by ``weights``, uncertainty more in larger floor plans; see ``CombinedReward``.
+    The sum of these terms, each times its weight; ``info["reward_terms"]`` holds them by name. ``reward`` takes a
+    preset of weights, below, weights by term, or a function of one's own, see ``lidarena.envs.rewards``.
 
-    ``info["reward_terms"]`` holds the terms by name.
+    | Term | Value | `completeness` | `d_optimality` | `combined` |
+    |------|-------|------|------|------|
+    | completeness | gain in completeness | 100 | | 10 |
+    | d_optimality | 1 + tanh(η / D), D = det(Σ)^(1/3) of the pose's covariance | | 1 | |
+    | path | minus the path driven, over that which is usual in a floor plan of this size | | | 1 |
+    | uncertainty | minus the change of the mean of ln D, more in larger floor plans | | | 1 |
+    | collision | -1 in the step of a collision | 100 | 100 | 10 |
+
+    ``"completeness"`` and ``"d_optimality"`` are DA-SLAM's eqs. 2 and 3, in which the step of a collision earns nothing
+    else; ``"combined"`` adds up to what a comparison measures. Completeness is the known share of K, the cells that the
+    robot can come to know (``measure_coverage``). See ``ExplorationTerms``.
 
     ## Starting state
 
@@ -93,20 +100,47 @@ class ExplorationEnv(SingleWorld):
     ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``; with ``slam="rbpf"`` ``entropy`` of the
     weights [nat], ``n_eff``, ``entropy_gmapping`` (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``);
     ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``success`` (completeness reached ``stop_at``),
-    ``radius`` of the robot [m], ``odometry_pose`` (3,), ``reward_terms``; ``map``
-    (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change),
+    ``radius`` of the robot [m], ``scan`` (beams,) measured ranges [m], ``odometry_pose`` (3,), ``reward_terms``;
+    ``map`` (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change),
     ``resolution`` [m], ``origin`` (2,).
     What depends on the truth is ``completeness`` (and with it the reward), ``collision`` (a bumper) and, only with
     ``expose_truth=True``, ``truth``: ``pose`` and ``path_length``.
 
     ## Arguments
 
-    See ``ExplorationOptions``.
+    In full: ``ExplorationOptions``.
+
+    | Name | Type | Default | Meaning |
+    |------|------|---------|---------|
+    | `map` | str, plan, generator or list | `"willow_lobby"` | floor plan, or several from which every reset draws |
+    | `reward` | str, dict or function | `"completeness"` | what a step is worth, see above |
+    | `observation` | str or observer | `"da_slam"` | what is seen, see above |
+    | `action` | str | `"discrete"` | or `"continuous"` |
+    | `slam` | str, callable or dict | `"rbpf"` | estimator: also `"odometry"`, `"truth"`, or one's own |
+    | `particles` | int | `30` | of the particle filter |
+    | `lidar_noise` | float | `0.01` | standard deviation of a range [m] |
+    | `odometry_noise` | float | `1.0` | factor on gmapping's motion noise; 0 is perfect odometry |
+    | `decision_period` | float | `0.2` | time between decisions [s] |
+    | `collision_distance` | float | `0.12` | range of a beam below which it is a collision [m] |
+    | `max_episode_steps` | int | `1000` | truncates; -1 never |
+    | `start` | pose, str or None | `None` | (x, y, theta), `"random"`, or the map's own |
+    | `stop_at` | float or None | `0.995` | completeness that ends an episode; None never |
+    | `patience` | float or None | `None` | time without 0.1% more that truncates [s]; None never |
+    | `expose_truth` | bool | `False` | give ``info["truth"]``, for evaluation |
+    | `render_mode` | str or None | `None` | or `"rgb_array"` |
+    | `eta` | float | `0.00012` | η of the term `d_optimality` [m^(4/3) rad^(2/3)] |
+    | `certain_enough` | float | `0.00013` | D from which on down the term `uncertainty` pays no more |
 
     ## References
 
     Alcalde et al., DA-SLAM: Deep Active SLAM based on Deep Reinforcement Learning, LARS 2022. Grisetti, Stachniss,
     Burgard, Improved techniques for grid mapping with Rao-Blackwellized particle filters, T-RO 2007.
+
+    ## Version History
+
+    - v0: since Lidarena 0.1. Since 0.2 the reward never changes the observation: what ``reward="d_optimality"`` made of
+      ``"da_slam"`` is ``"da_slam_entropy"``; ``"compass"`` is called ``"frontier_histogram"``; the covariance in
+      ``observation="map"`` is scaled; ``weights`` are given in ``reward``; there are ``success``, ``radius``, ``scan``.
     """
 
     metadata: dict[str, Any] = {"render_modes": ["rgb_array"], "render_fps": 5}  # noqa: RUF012 - as gym.Env declares it
