@@ -325,7 +325,7 @@ def test_other_spaces_cannot_be_written() -> None:
 
 
 def test_a_file_of_version_0_1_means_what_it_meant(tmp_path: Path) -> None:
-    shipped = resolve("pretrained:uncertainty").parent
+    shipped = resolve("pretrained:uncertainty")
     for name in ("policy.json", "policy.safetensors"):
         (tmp_path / name).write_bytes((shipped / name).read_bytes())
     card = json.loads((tmp_path / "policy.json").read_text())
