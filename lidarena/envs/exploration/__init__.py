@@ -33,5 +33,6 @@ FAMILY = Family(
     },
     measures="lidarena.evaluation.measures.exploration:MEASURES",
     baselines="lidarena.baselines.exploration",
+    agent_options=("observation", "action", "lidar.max_range", "lidar.field_of_view"),
     keywords_of_0_1="lidarena.envs.exploration.options:keywords_of_0_1",
 )
