@@ -100,7 +100,8 @@ def main() -> None:
     given = parser.parse_args()
     naive = rates(NaiveTeams(load_floorplan("office"), 8).step, 8 * ROBOTS, max(given.steps // 20, 5))
     robots = TEAMS * ROBOTS
-    batch = gym.make_vec("lidarena/CorridorShared-v0", robots, "vector_entry_point", robots=ROBOTS, beams=BEAMS)
+    team = {"robots": ROBOTS, "lidar": {"beams": BEAMS}}
+    batch = gym.make_vec("lidarena/CorridorShared-v0", robots, "vector_entry_point", **team)
     batch.reset(seed=0)
     ours = rates(lambda actions: batch.step(actions)[0], robots, given.steps)
     print(f"{'':44} {'wall-clock':>12} {'processor':>12}")

@@ -90,6 +90,6 @@ def sense_and_reckon(
         d_optimalities[w] = d_optimality(covariance[w])
         map_scan(
             w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters, reading,
-            sensing.sensors.scans[w, 0], estimate[w], since, maps, outlines, thread,
+            sensing.sensors.scans[w, 0], sensing.sensors.fresh[w], estimate[w], since, maps, outlines, thread,
         )  # fmt: skip
         w = take_next(counter)

@@ -24,11 +24,13 @@ class ScanSpec(NamedTuple):
         angles: (beams,) direction of each beam from straight ahead, counter-clockwise [rad].
         max_range: A range from here on is no return [m].
         noise: Standard deviation of a range [m].
+        min_range: Beams that would measure less report 0 [m].
     """
 
     angles: NDArray[np.float64]
     max_range: float
     noise: float
+    min_range: float = 0.0
 
 
 class MapGrid(NamedTuple):
@@ -78,7 +80,8 @@ class WorldEstimator(Protocol):
         Args:
             odometry: (3,) measured motion dx, dy [m], dtheta [rad] since the last update, in the robot's frame then;
                 zero in the first update of an episode.
-            scan: (beams,) ranges measured after it [m].
+            scan: (beams,) ranges measured after it [m]. A range of 0 says nothing: between two scans of a lidar that is
+                slower than the decisions all are 0.
             time: Since the episode began [s]; 0 in its first update.
         """
 
@@ -137,7 +140,7 @@ class Sensing(NamedTuple):
 def sense(w: int, sensing: Sensing) -> None:
     """Read the sensors of world w; for the kernels of estimators."""
     read_sensors(
-        w, sensing.before, sensing.poses, sensing.plan, sensing.noise, sensing.lidar, sensing.bumper,
+        w, sensing.period, sensing.before, sensing.poses, sensing.plan, sensing.noise, sensing.lidar, sensing.bumper,
         sensing.geometry, sensing.directions, sensing.streams, sensing.sensors,
     )  # fmt: skip
 

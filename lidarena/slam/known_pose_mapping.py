@@ -59,6 +59,7 @@ def map_scan(
     parameters: FilterParameters,
     reading: NDArray[np.float64],
     scan: NDArray[np.float32],
+    fresh: bool,
     pose: NDArray[np.float64],
     since: NDArray[np.float64],
     maps: OccupancyMaps,
@@ -76,6 +77,7 @@ def map_scan(
         parameters: Settings, of which only the update rule matters.
         reading: (3,) the motion.
         scan: (beams,) ranges [m].
+        fresh: Whether the scan was taken now; an older one is not looked at.
         pose: (3,) where the scan was taken.
         since: (worlds, 3), see ``KnownPoseEstimator``.
         maps: The grids.
@@ -86,6 +88,6 @@ def map_scan(
     since[w, 1] += abs(reading[2])
     since[w, 2] += duration
     due = since[w, 0] >= parameters.linear_update or since[w, 1] >= parameters.angular_update
-    if due or since[w, 2] > parameters.temporal_update:
+    if fresh and (due or since[w, 2] > parameters.temporal_update):
         trace_scan(maps, w, resolution, pose, scan, directions, max_range, 1, outlines, s)
         since[w] = 0.0

@@ -57,6 +57,7 @@ def sense_and_map(
             estimate[w, k] = sensing.poses[w, 0, k]
         map_scan(
             w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters,
-            sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], estimate[w], since, maps, outlines, thread,
+            sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w], estimate[w], since,
+            maps, outlines, thread,
         )  # fmt: skip
         w = take_next(counter)

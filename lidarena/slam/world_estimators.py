@@ -41,7 +41,8 @@ class WorldEstimators(BatchEstimator):
         super().__init__(settings)
         self._name = name
         cos, sin = settings.directions
-        self.spec = ScanSpec(np.arctan2(sin, cos), settings.lidar.max_range, settings.lidar.noise)
+        lidar = settings.lidar
+        self.spec = ScanSpec(np.arctan2(sin, cos), lidar.max_range, lidar.noise, lidar.min_range)
         self.each = [make(self.spec) for _ in range(settings.worlds)]
         self._check_each()
         self._draws = _draws(self.each[0].reset)
@@ -93,7 +94,8 @@ class WorldEstimators(BatchEstimator):
             begins = self._updates[world] == 0
             reading = np.zeros(3) if begins else sensing.sensors.readings[world, 0].copy()
             time = float(self._updates[world]) * sensing.period
-            self.each[world].update(reading, sensing.sensors.scans[world, 0].copy(), time)
+            scan = sensing.sensors.scans[world, 0]
+            self.each[world].update(reading, scan.copy() if sensing.sensors.fresh[world] else np.zeros_like(scan), time)
             self._updates[world] += 1
             self._take_over(world)
 

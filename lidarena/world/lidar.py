@@ -13,29 +13,83 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel, leaf
+from lidarena.base.jit import inlined, kernel, leaf
 from lidarena.base.random_streams import normal
 from lidarena.world.floorplan import Floorplan
 
+FULL_CIRCLE = 2.0 * math.pi
+"""Field of view of a lidar that sees all around [rad]."""
 TILE = 1.0
 """Side of the tiles by which edges are looked up [m]."""
 _FIRST_BEAM = np.int64(0)  # a plain 0 as an argument would be a type of its own, compiled apart
+NO_OUTLINE = np.empty((0, 2))
+"""Of robots that are discs."""
 _TOUCH = 1e-9
 """Beams this close (in beam spacings) to an edge's end still hit it, so that no beam slips between two edges."""
 
 
 class LidarSpec(NamedTuple):
-    """A planar lidar; the defaults are the TurtleBot3's LDS-01.
+    """A planar lidar that looks ahead; the defaults are the TurtleBot3's LDS-01, seeing from 0 m on.
 
     Attributes:
-        beams: How many, evenly over the full turn, the first one straight ahead, counter-clockwise.
+        beams: How many. Over a full circle they are even, the first one straight ahead, counter-clockwise; over less
+            they are even from one end of the field of view to the other, the first one the rightmost.
         max_range: Longest range measured; a beam that meets nothing reports exactly this [m].
         noise: Standard deviation of a range [m].
+        field_of_view: Angle that the beams span, half of it to either side of straight ahead [rad].
+        min_range: A beam that measures less reports 0, as the LDS-01's driver does: it met something, but says not
+            where [m].
+        rate: Scans per second [Hz]; between two scans the last one is kept. Infinite: one at every decision.
     """
 
     beams: int = 360
     max_range: float = 3.5
     noise: float = 0.01
+    field_of_view: float = FULL_CIRCLE
+    min_range: float = 0.0
+    rate: float = math.inf
+
+    @property
+    def sees_all_around(self) -> bool:
+        """Whether the field of view is the full circle."""
+        return self.field_of_view >= FULL_CIRCLE
+
+    @property
+    def increment(self) -> float:
+        """Angle from one beam to the next [rad]."""
+        return self.field_of_view / (self.beams if self.sees_all_around else self.beams - 1)
+
+    @property
+    def angles(self) -> NDArray[np.float64]:
+        """Of the beams, in the robot's frame (beams,) [rad]: from 0 to 2π all around, else from -π to π."""
+        turned = np.arange(self.beams, dtype=np.float64) * self.increment
+        return np.asarray(turned if self.sees_all_around else turned - 0.5 * self.field_of_view)
+
+    @property
+    def directions(self) -> NDArray[np.float64]:
+        """Cosines and sines of the beams' angles (2, beams)."""
+        return np.stack([np.cos(self.angles), np.sin(self.angles)])
+
+    def nearest_beam(self, angle: float) -> int:
+        """The number of the beam that is nearest to an angle [rad]."""
+        apart = np.abs((self.angles - angle + np.pi) % (2.0 * np.pi) - np.pi)
+        return int(np.argmin(apart))
+
+
+class Fan(NamedTuple):
+    """How beams are numbered, for the kernel.
+
+    Attributes:
+        per_radian: Beams in a radian.
+        first: Angle of the first beam, in beams.
+        turn: Beams that would fill a full circle.
+        closed: Whether they do.
+    """
+
+    per_radian: float
+    first: float
+    turn: float
+    closed: bool
 
 
 class MapGeometry(NamedTuple):
@@ -71,20 +125,27 @@ class Lidar:
     def __init__(self, plans: Sequence[Floorplan], spec: LidarSpec | None = None) -> None:
         self.spec = spec or LidarSpec()
         self.geometry = lay_out(plans, self.spec.max_range)
-        angles = np.arange(self.spec.beams) * (2 * np.pi / self.spec.beams)
-        self.directions = np.stack([np.cos(angles), np.sin(angles)])
+        self.directions = self.spec.directions
 
-    def cast(self, poses: NDArray[np.float64], plan: NDArray[np.int64], radius: float = 0.0) -> NDArray[np.float64]:
+    def cast(
+        self,
+        poses: NDArray[np.float64],
+        plan: NDArray[np.int64],
+        radius: float = 0.0,
+        outline: NDArray[np.float64] = NO_OUTLINE,
+    ) -> NDArray[np.float64]:
         """Exact ranges ``(worlds, robots, beams)`` [m], ``max_range`` where a beam meets nothing.
 
         Args:
             poses: ``(worlds, robots, 3)`` x, y, theta.
             plan: ``(worlds,)`` index of each world's floor plan.
             radius: Of the other robots, which beams meet too; 0 leaves them invisible [m].
+            outline: ``(n, 2)`` corners of the other robots, counter-clockwise in their frame, that beams meet in place
+                of the discs; they lie within ``radius`` [m].
         """
         worlds, robots = poses.shape[:2]
         ranges = np.empty((worlds, robots, self.spec.beams))
-        cast_beams(0, worlds, poses, plan, radius, self.geometry, self.directions, self.spec.max_range, ranges)
+        cast_beams(0, worlds, poses, plan, radius, outline, self.geometry, self.directions, self.spec, ranges)
         return ranges
 
 
@@ -95,26 +156,36 @@ def cast_beams(
     poses: NDArray[np.float64],
     plan: NDArray[np.int64],
     radius: float,
+    outline: NDArray[np.float64],
     geometry: MapGeometry,
     directions: NDArray[np.float64],
-    max_range: float,
+    lidar: LidarSpec,
     ranges: NDArray[np.float64],
 ) -> None:
     """Fill ``ranges`` (worlds, robots, beams) of worlds first … last - 1; see ``Lidar.cast``."""
-    beams = directions.shape[1]
+    beams, fan = directions.shape[1], _fan_of(lidar)
     for w in range(first, last):
         for r in range(poses.shape[1]):
             x, y, theta = poses[w, r, 0], poses[w, r, 1], poses[w, r, 2]
             inverse = ranges[w, r]  # inverse ranges until the end
             for k in range(beams):
-                inverse[k] = 1.0 / max_range
-            _see_plan(x, y, theta, plan[w], geometry, max_range, directions, inverse)
+                inverse[k] = 1.0 / lidar.max_range
+            _see_plan(x, y, theta, plan[w], geometry, lidar.max_range, fan, directions, inverse)
             if radius > 0.0:
                 for other in range(poses.shape[1]):
                     if other != r:
-                        _see_circle(poses[w, other, 0] - x, poses[w, other, 1] - y, radius, theta, directions, inverse)
+                        _see_robot(poses[w, r], poses[w, other], radius, outline, lidar, fan, directions, inverse)
             for k in range(beams):
-                ranges[w, r, k] = min(1.0 / ranges[w, r, k], max_range)
+                ranges[w, r, k] = min(1.0 / ranges[w, r, k], lidar.max_range)
+
+
+@inlined
+def _fan_of(lidar: LidarSpec) -> Fan:
+    """How a lidar's beams are numbered."""
+    if lidar.field_of_view >= FULL_CIRCLE:
+        return Fan(lidar.beams / (2.0 * math.pi), 0.0, np.float64(lidar.beams), True)
+    per_radian = (lidar.beams - 1) / lidar.field_of_view
+    return Fan(per_radian, -0.5 * (lidar.beams - 1), 2.0 * math.pi * per_radian, False)
 
 
 @leaf
@@ -125,6 +196,7 @@ def _see_plan(
     plan: int,
     geometry: MapGeometry,
     max_range: float,
+    fan: Fan,
     directions: NDArray[np.float64],
     inverse: NDArray[np.float64],
 ) -> None:
@@ -143,12 +215,43 @@ def _see_plan(
             # into the robot's frame, where beam k always points in direction k
             ax, ay = (x1 - x) * cos + (y1 - y) * sin, (y1 - y) * cos - (x1 - x) * sin
             bx, by = (x2 - x) * cos + (y2 - y) * sin, (y2 - y) * cos - (x2 - x) * sin
-            _see_edge(ax, ay, bx, by, max_range, directions, inverse)
+            _see_edge(ax, ay, bx, by, max_range, fan, directions, inverse)
         else:
             cx, cy, radius = geometry.circles[item - count]
             reach = max_range + radius
             if (cx - x) * (cx - x) + (cy - y) * (cy - y) < reach * reach:
-                _see_circle(cx - x, cy - y, radius, theta, directions, inverse)
+                _see_circle(cx - x, cy - y, radius, theta, fan, directions, inverse)
+
+
+@leaf
+def _see_robot(
+    pose: NDArray[np.float64],
+    other: NDArray[np.float64],
+    radius: float,
+    outline: NDArray[np.float64],
+    lidar: LidarSpec,
+    fan: Fan,
+    directions: NDArray[np.float64],
+    inverse: NDArray[np.float64],
+) -> None:
+    """Raise ``inverse`` along the beams from ``pose`` (3,) that meet the robot at ``other`` (3,)."""
+    dx, dy, corners = other[0] - pose[0], other[1] - pose[1], outline.shape[0]
+    if corners == 0:
+        _see_circle(dx, dy, radius, pose[2], fan, directions, inverse)
+        return
+    reach = lidar.max_range + radius
+    if dx * dx + dy * dy >= reach * reach:
+        return
+    cos, sin = math.cos(pose[2]), math.sin(pose[2])
+    turned_cos, turned_sin = math.cos(other[2] - pose[2]), math.sin(other[2] - pose[2])
+    middle_x, middle_y = dx * cos + dy * sin, dy * cos - dx * sin
+    for k in range(corners):
+        following = k + 1 if k + 1 < corners else 0
+        ax = middle_x + outline[k, 0] * turned_cos - outline[k, 1] * turned_sin
+        ay = middle_y + outline[k, 0] * turned_sin + outline[k, 1] * turned_cos
+        bx = middle_x + outline[following, 0] * turned_cos - outline[following, 1] * turned_sin
+        by = middle_y + outline[following, 0] * turned_sin + outline[following, 1] * turned_cos
+        _see_edge(ax, ay, bx, by, lidar.max_range, fan, directions, inverse)
 
 
 @leaf
@@ -158,6 +261,7 @@ def _see_edge(
     bx: float,
     by: float,
     reach: float,
+    fan: Fan,
     directions: NDArray[np.float64],
     inverse: NDArray[np.float64],
 ) -> None:
@@ -169,16 +273,20 @@ def _see_edge(
     if cross * cross > (ex * ex + ey * ey) * reach * reach:  # its whole line is out of range
         return
     beams = inverse.shape[0]
-    per_radian = beams / (2.0 * math.pi)
-    low = math.atan2(by, bx) * per_radian  # b is clockwise of a
-    high = math.atan2(ay, ax) * per_radian
+    low = math.atan2(by, bx) * fan.per_radian - fan.first  # b is clockwise of a
+    high = math.atan2(ay, ax) * fan.per_radian - fan.first
     if high < low:
-        high += beams
+        high += fan.turn
     begin = math.ceil(low - _TOUCH)
     end = math.floor(high + _TOUCH) + 1
+    a, b = ey / cross, -ex / cross
+    if not fan.closed:
+        _raise_run(max(begin, _FIRST_BEAM), min(end, beams), a, b, directions, inverse)
+        end = math.floor(high - fan.turn + _TOUCH) + 1  # the same edge, seen across the gap behind
+        _raise_run(_FIRST_BEAM, min(end, beams), a, b, directions, inverse)
+        return
     if begin < 0:
         begin, end = begin + beams, end + beams
-    a, b = ey / cross, -ex / cross
     _raise_run(begin, min(end, beams), a, b, directions, inverse)
     if end > beams:
         _raise_run(_FIRST_BEAM, end - beams, a, b, directions, inverse)
@@ -197,43 +305,84 @@ def _raise_run(
 
 @leaf
 def _see_circle(
-    dx: float, dy: float, radius: float, theta: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
+    dx: float,
+    dy: float,
+    radius: float,
+    theta: float,
+    fan: Fan,
+    directions: NDArray[np.float64],
+    inverse: NDArray[np.float64],
 ) -> None:
     """Raise ``inverse`` along the beams that meet a circle whose centre is (dx, dy) from the robot."""
     squared = dx * dx + dy * dy
     if squared <= radius * radius:
         return
     beams = inverse.shape[0]
-    per_radian = beams / (2.0 * math.pi)
-    middle = (math.atan2(dy, dx) - theta) * per_radian
-    half = math.asin(radius / math.sqrt(squared)) * per_radian
+    middle = (math.atan2(dy, dx) - theta) * fan.per_radian - fan.first
+    half = math.asin(radius / math.sqrt(squared)) * fan.per_radian
     cos, sin = math.cos(theta), math.sin(theta)
     cx, cy = dx * cos + dy * sin, dy * cos - dx * sin
-    for n in range(math.ceil(middle - half), math.floor(middle + half) + 1):
-        k = n % beams
-        along = cx * directions[0, k] + cy * directions[1, k]
-        root = radius * radius - squared + along * along
-        if root >= 0.0 and along > 0.0:
-            inverse[k] = max(inverse[k], 1.0 / (along - math.sqrt(root)))
+    excess = radius * radius - squared
+    if fan.closed:
+        for n in range(math.ceil(middle - half), math.floor(middle + half) + 1):
+            _meet_circle(n % beams, cx, cy, excess, directions, inverse)
+        return
+    for turns in range(-1, 2):
+        shifted = middle + turns * fan.turn
+        begin, end = math.ceil(shifted - half), math.floor(shifted + half) + 1
+        for n in range(max(begin, 0), min(end, beams)):
+            _meet_circle(n, cx, cy, excess, directions, inverse)
+
+
+@inlined
+def _meet_circle(
+    k: int, cx: float, cy: float, excess: float, directions: NDArray[np.float64], inverse: NDArray[np.float64]
+) -> None:
+    """Raise ``inverse[k]`` if beam k meets a circle at (cx, cy); ``excess``: its radius² less its distance²."""
+    along = cx * directions[0, k] + cy * directions[1, k]
+    root = excess + along * along
+    if root >= 0.0 and along > 0.0:
+        inverse[k] = max(inverse[k], 1.0 / (along - math.sqrt(root)))
+
+
+@inlined
+def scan_is_due(w: int, period: float, lidar: LidarSpec, since: NDArray[np.float64]) -> bool:
+    """Whether the lidar of world w scans now, ``period`` after it was asked last [s].
+
+    Args:
+        w: World.
+        period: [s].
+        lidar: Its rate is what matters.
+        since: (worlds,) time since the last scan, changed [s]; ``first_scan`` in the beginning.
+    """
+    interval = 1.0 / lidar.rate
+    since[w] += period
+    if since[w] < interval - 1e-9:
+        return False
+    since[w] = min(since[w] - interval, interval)
+    return True
+
+
+def first_scan(period: float, lidar: LidarSpec) -> float:
+    """What ``since`` of ``scan_is_due`` must be for a scan to be due at once [s]."""
+    return 1.0 / lidar.rate - period
 
 
 @leaf
 def add_range_noise(
     first: int,
     last: int,
-    noise: float,
-    max_range: float,
+    lidar: LidarSpec,
     streams: NDArray[np.uint64],
     ranges: NDArray[np.float64],
     scans: NDArray[np.float32],
 ) -> None:
-    """Fill ``scans`` (worlds, robots, beams) with noisy ranges; beyond ``max_range``, or without a hit, ``max_range``.
+    """Fill ``scans`` (worlds, robots, beams) with what the lidar makes of ranges, see ``LidarSpec``.
 
     Args:
         first: First world.
         last: World after the last.
-        noise: Standard deviation [m].
-        max_range: [m].
+        lidar: Its noise and its shortest and longest ranges matter.
         streams: (worlds, 4) random streams.
         ranges: (worlds, robots, beams) exact ranges.
         scans: (worlds, robots, beams) output.
@@ -242,9 +391,9 @@ def add_range_noise(
         for r in range(ranges.shape[1]):
             for k in range(ranges.shape[2]):
                 value = ranges[w, r, k]
-                if value < max_range and noise > 0.0:
-                    value += noise * normal(streams[w])
-                scans[w, r, k] = min(max(value, 0.0), max_range)
+                if value < lidar.max_range and lidar.noise > 0.0:
+                    value += lidar.noise * normal(streams[w])
+                scans[w, r, k] = min(value, lidar.max_range) if value >= lidar.min_range else 0.0
 
 
 def lay_out(plans: Sequence[Floorplan], max_range: float) -> MapGeometry:

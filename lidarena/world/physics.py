@@ -1,9 +1,8 @@
-"""Rigid-body motion: one pymunk space a world, disc robots with a differential drive among static walls."""
+"""Rigid-body motion: one pymunk space a world, robots with a differential drive among static walls."""
 
 import math
 from collections.abc import Sequence
 from functools import partial
-from typing import NamedTuple
 
 import numpy as np
 import pymunk
@@ -11,29 +10,12 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
 from lidarena.world.floorplan import Floorplan, Pose
+from lidarena.world.robots import RobotSpec
 
 _SLOP = 1e-3
 """Overlap that contacts tolerate [m]; pymunk's default of 0.1 is meant for pixels."""
 _MARGIN = 0.02
 """Room beside a robot's way within which it might touch what its beams see, or just miss [m]."""
-
-
-class RobotSpec(NamedTuple):
-    """A disc robot; the defaults are the TurtleBot3 Burger's.
-
-    Attributes:
-        radius: Of the disc [m].
-        mass: [kg].
-        max_speed: Fastest forward speed that a command may ask for [m/s]; Yang et al. drives at 0.5.
-        max_turn_rate: Fastest turn that a command may ask for [rad/s].
-        substep: Longest time step of the physics while the robot is near something [s].
-    """
-
-    radius: float = 0.105
-    mass: float = 1.0
-    max_speed: float = 0.5
-    max_turn_rate: float = 1.0
-    substep: float = 0.04
 
 
 class Physics:
@@ -138,7 +120,7 @@ def may_touch(
     Args:
         commands: (worlds, robots, 2) forward speed [m/s] and turn rate [rad/s].
         duration: [s].
-        radius: Of the robot [m].
+        radius: Of the robot, or of the circle that holds it [m].
         ranges: (worlds, 1, beams) exact ranges [m].
         directions: (2, beams) cos and sin of the beams' angles.
         near: Output.
@@ -190,11 +172,16 @@ def turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, d
 
 
 def add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
-    """Put a new body in a space."""
-    body = pymunk.Body(spec.mass, pymunk.moment_for_circle(spec.mass, 0.0, spec.radius))
-    shape = pymunk.Circle(body, spec.radius)
-    shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
-    space.add(body, shape)
+    """Put a new body in a space: a disc, or the robot's outline."""
+    if spec.outline:
+        body = pymunk.Body(spec.mass, pymunk.moment_for_poly(spec.mass, list(spec.outline)))
+        shapes: list[pymunk.Shape] = [pymunk.Poly(body, part) for part in spec.parts]
+    else:
+        body = pymunk.Body(spec.mass, pymunk.moment_for_circle(spec.mass, 0.0, spec.radius))
+        shapes = [pymunk.Circle(body, spec.radius)]
+    for shape in shapes:
+        shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
+    space.add(body, *shapes)
     return body
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import merged
-from lidarena.world.lidar import LidarSpec, MapGeometry, add_range_noise, cast_beams
+from lidarena.world.lidar import NO_OUTLINE, LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
 
 
@@ -22,6 +22,8 @@ class Sensors(NamedTuple):
         path_length: (W,) length of the odometry's path [m].
         true_path_length: (W,) length of the true path [m].
         collision: (W,) whether some exact range is below the bumper's distance.
+        since_scan: (W,) time since the last scan [s].
+        fresh: (W,) whether the scan is of the last step; a slow lidar keeps its last one.
     """
 
     ranges: NDArray[np.float64]
@@ -31,6 +33,8 @@ class Sensors(NamedTuple):
     path_length: NDArray[np.float64]
     true_path_length: NDArray[np.float64]
     collision: NDArray[np.bool_]
+    since_scan: NDArray[np.float64]
+    fresh: NDArray[np.bool_]
 
 
 def empty_sensors(worlds: int, beams: int) -> Sensors:
@@ -43,12 +47,15 @@ def empty_sensors(worlds: int, beams: int) -> Sensors:
         np.zeros(worlds),
         np.zeros(worlds),
         np.zeros(worlds, np.bool_),
+        np.zeros(worlds),
+        np.zeros(worlds, np.bool_),
     )
 
 
 @merged
 def read_sensors(
     w: int,
+    period: float,
     before: NDArray[np.float64],
     poses: NDArray[np.float64],
     plan: NDArray[np.int64],
@@ -64,6 +71,7 @@ def read_sensors(
 
     Args:
         w: World.
+        period: Duration of the motion [s].
         before: (W, 1, 3) true poses before the motion.
         poses: (W, 1, 3) true poses after it.
         plan: (W,) index of each world's floor plan.
@@ -76,8 +84,10 @@ def read_sensors(
         sensors: Output.
     """
     read_odometry(w, w + 1, before, poses, noise, streams, sensors.readings)
-    cast_beams(w, w + 1, poses, plan, 0.0, geometry, directions, lidar.max_range, sensors.ranges)
-    add_range_noise(w, w + 1, lidar.noise, lidar.max_range, streams, sensors.ranges, sensors.scans)
+    cast_beams(w, w + 1, poses, plan, 0.0, NO_OUTLINE, geometry, directions, lidar, sensors.ranges)
+    sensors.fresh[w] = scan_is_due(w, period, lidar, sensors.since_scan)
+    if sensors.fresh[w]:
+        add_range_noise(w, w + 1, lidar, streams, sensors.ranges, sensors.scans)
     dx, dy, dtheta = sensors.readings[w, 0, 0], sensors.readings[w, 0, 1], sensors.readings[w, 0, 2]
     move(sensors.dead_reckoning[w, 0], dx, dy, dtheta)
     sensors.path_length[w] += math.sqrt(dx * dx + dy * dy)

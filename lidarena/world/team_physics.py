@@ -10,7 +10,8 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.physics import Physics, RobotSpec, add_robot, build_space, chord, turn_wheels
+from lidarena.world.physics import Physics, add_robot, build_space, chord, turn_wheels
+from lidarena.world.robots import RobotSpec
 
 _WALL, _ROBOT = 0, 1  # pymunk's collision types
 
@@ -66,7 +67,8 @@ class TeamPhysics(Physics):
             x, y, theta = self.poses[world, robot].tolist()
             speed, rate = commands[robot].tolist()
             body = add_robot(space, self.spec)
-            next(iter(body.shapes)).collision_type = _ROBOT
+            for shape in body.shapes:
+                shape.collision_type = _ROBOT
             body.position, body.angle = (x, y), theta
             body.velocity_func = partial(turn_wheels, speed, rate)
             self._robots_of[body] = (world, robot)

@@ -49,7 +49,7 @@ def test_a_switch_is_true_or_false(value: Any) -> None:
 
 @pytest.mark.parametrize("make", [ExplorationEnv, ArenaEnv, CorridorCentralEnv])
 def test_numpys_numbers_are_numbers(make: Any) -> None:
-    env = make(max_episode_steps=np.int64(3), lidar_noise=np.float32(0.0))
+    env = make(max_episode_steps=np.int64(3), lidar={"noise": np.float32(0.0)})
     env.reset(seed=0)
     steps = [env.step(env.action_space.sample())[2:4] for _ in range(3)]
     assert steps[-1][1] and not steps[0][1]

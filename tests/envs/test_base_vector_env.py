@@ -18,7 +18,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "arena": ("lidarena/Arena-v0", {"density": 0.25, "max_episode_steps": 7, "knowledge": "lidar"}),
     "corridor": (
         "lidarena/CorridorCentral-v0",
-        {"robots": 2, "radius": 0.3, "places": "random", "max_episode_steps": 6},
+        {"robots": 2, "robot": {"radius": 0.3}, "places": "random", "max_episode_steps": 6},
     ),
 }
 every_family = pytest.mark.parametrize("case", CASES)

@@ -8,7 +8,7 @@ from lidarena.base.random_streams import seed_stream
 from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.lidar import Lidar, add_range_noise
+from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise
 from lidarena.world.odometry import OdometryNoise, read_odometry
 from lidarena.world.physics import Physics
 
@@ -33,7 +33,7 @@ class Drive:
 
     def _scan(self) -> None:
         self.ranges = self.lidar.cast(self.physics.poses, np.zeros(1, np.int64))
-        add_range_noise(0, 1, 0.01, 3.5, self.streams, self.ranges, self.scans)
+        add_range_noise(0, 1, LidarSpec(), self.streams, self.ranges, self.scans)
 
     def _filter(self) -> None:
         self.filters.step(0, 0.2, self.readings[0, 0], self.scans[0, 0], self.streams[0])

@@ -34,7 +34,7 @@ def feed(
     made: KnownPoseEstimator, reading: np.ndarray, scan: np.ndarray, pose: np.ndarray, seconds: float, world: int = 0
 ) -> None:
     settings_ = (seconds, 0.05, REACH, DIRECTIONS, made.parameters)
-    map_scan(world, *settings_, reading, scan, pose, made.since, made.maps, made.outlines, 0)
+    map_scan(world, *settings_, reading, scan, True, pose, made.since, made.maps, made.outlines, 0)
 
 
 def random_scans(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:

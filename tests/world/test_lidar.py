@@ -104,7 +104,7 @@ def test_noise_has_the_stated_deviation_and_leaves_missing_returns() -> None:
     ranges = np.full((1, 1, 20000), 2.0)
     ranges[0, 0, ::2] = 3.5
     scans = np.zeros(ranges.shape, np.float32)
-    add_range_noise(0, 1, 0.01, 3.5, seed_stream(np.random.default_rng(1))[None], ranges, scans)
+    add_range_noise(0, 1, LidarSpec(), seed_stream(np.random.default_rng(1))[None], ranges, scans)
     assert (scans[0, 0, ::2] == 3.5).all()
     assert scans[0, 0, 1::2].std() == pytest.approx(0.01, rel=0.05)
     assert scans[0, 0, 1::2].mean() == pytest.approx(2.0, abs=5e-4)

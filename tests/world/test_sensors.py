@@ -26,7 +26,7 @@ def measure(
     sensors: Sensors, w: int, before: np.ndarray, after: np.ndarray, streams: np.ndarray, noise: OdometryNoise
 ) -> None:
     plan = np.zeros(WORLDS, np.int64)
-    read_sensors(w, before, after, plan, noise, SPEC, BUMPER, LIDAR.geometry, LIDAR.directions, streams, sensors)
+    read_sensors(w, 0.2, before, after, plan, noise, SPEC, BUMPER, LIDAR.geometry, LIDAR.directions, streams, sensors)
 
 
 def ways(seed: int, steps: int) -> np.ndarray:
@@ -47,7 +47,7 @@ def test_a_measurement_is_that_of_odometry_lidar_and_bumper(seed: int, steps: in
         measure(sensors, 1, before, after, streams, noise)
         read_odometry(1, 2, before, after, noise, again, readings)
         ranges = LIDAR.cast(after, np.zeros(WORLDS, np.int64))
-        add_range_noise(1, 2, SPEC.noise, SPEC.max_range, again, ranges, scans)
+        add_range_noise(1, 2, SPEC, again, ranges, scans)
         move(reckoned, *readings[1, 0].tolist())
         way += math.hypot(*readings[1, 0, :2])
         true_way += math.dist(before[1, 0, :2], after[1, 0, :2])

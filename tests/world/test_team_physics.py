@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from lidarena.world.load import load_floorplan
-from lidarena.world.physics import RobotSpec
+from lidarena.world.robots import RobotSpec
 from lidarena.world.team_physics import TeamPhysics
 
 SPEC = RobotSpec(substep=0.07)

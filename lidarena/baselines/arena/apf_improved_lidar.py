@@ -62,7 +62,7 @@ class ImprovedLidarField:
             info: The environment's; ``scan``, ``pose``, ``goal`` and ``radius`` are used.
         """
         pose, radius = info["pose"], float(info["radius"])
-        new = self._seen.add(hits_of(info, float(np.max(info["scan"])))[0])
+        new = self._seen.add(hits_of(info, self._heading.lidar)[0])
         points = self._seen.points()
         away = np.hypot(*(points - pose[:2]).T)
         wide = np.column_stack([points, np.full(len(points), radius * (1.0 + self._spare))])

@@ -44,7 +44,7 @@ class TraditionalLidarField:
             info: The environment's; ``scan``, ``pose``, ``goal`` and ``radius`` are used.
         """
         pose, goal, step = info["pose"], info["goal"], self._heading.step
-        points = nearest_of_each(info, float(np.max(info["scan"])))
+        points = nearest_of_each(info, self._heading.lidar)
         away = np.hypot(*(points - pose[:2]).T)
         radii = np.minimum(float(info["radius"]), _CLOSE * away)  # obstacles, grown by the robot's radius
         walk = self._downhill(np.column_stack([points, radii]), pose[:2], goal)

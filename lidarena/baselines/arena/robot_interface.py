@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
 from lidarena.envs.arena.actions import action_of
+from lidarena.envs.registration import owner_of
 
 
 class KnownWorld(NamedTuple):
@@ -62,12 +63,13 @@ class HeadingController:
 
     Attributes:
         step: What the robot drives in a decision [m].
+        lidar: What its scans are of.
     """
 
     def __init__(self, env: Any) -> None:
-        inner = getattr(env, "unwrapped", env)
+        inner = owner_of(env, "step_length")
         self._space: gym.Space[Any] = getattr(env, "single_action_space", env.action_space)
-        self.step = float(inner.step_length)
+        self.step, self.lidar = float(inner.step_length), inner.options.lidar
         self._show = getattr(inner, "show", None)
 
     def show(self, plan: NDArray[np.float64], before: NDArray[np.float64] | None = None) -> None:

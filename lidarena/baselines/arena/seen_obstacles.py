@@ -5,43 +5,52 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.world.lidar import LidarSpec
+
 _JUMP = 0.25
 """Neighbouring ranges that differ by more than this share of the nearer one, and by what lies between two beams, are
 of different obstacles."""
 
 
-def hits_of(info: dict[str, Any], longest: float) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+def hits_of(info: dict[str, Any], lidar: LidarSpec) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Where the beams end.
 
     Args:
         info: An arena environment's; ``scan`` and ``pose`` are used.
-        longest: Ranges from here on are of beams that met nothing [m].
+        lidar: Its lidar.
 
     Returns:
         Points (n, 2) [m], and the numbers (n,) of their beams.
     """
     scan, (x, y, theta) = np.asarray(info["scan"], np.float64), info["pose"]
-    beams = np.flatnonzero(scan < longest)
-    angles = theta + beams * (2.0 * np.pi / len(scan))
+    beams = np.flatnonzero(_hit(scan, lidar))
+    angles = theta + lidar.angles[beams]
     away = scan[beams, None] * np.column_stack([np.cos(angles), np.sin(angles)])
     return np.array([x, y]) + away, beams
 
 
-def nearest_of_each(info: dict[str, Any], longest: float) -> NDArray[np.float64]:
+def _hit(ranges: NDArray[np.float64], lidar: LidarSpec) -> NDArray[np.bool_]:
+    """Which ranges are of beams that met something, and could say where."""
+    return np.asarray((ranges > 0.0) & (ranges < np.float32(lidar.max_range)))
+
+
+def nearest_of_each(info: dict[str, Any], lidar: LidarSpec) -> NDArray[np.float64]:
     """The nearest hit (n, 2) of each obstacle that the scan shows [m]: the point that repels the robot.
 
     Args:
         info: See :func:`hits_of`.
-        longest: See there.
+        lidar: See there.
     """
-    points, beams = hits_of(info, longest)
+    points, beams = hits_of(info, lidar)
     if not len(points):
         return points
     scan = np.asarray(info["scan"], np.float64)
     ranges = scan[beams]
     before = scan[beams - 1]
-    spread = _JUMP + 4.0 * np.pi / len(scan)  # a surface seen at a slant recedes from beam to beam
-    new = (np.abs(ranges - before) > spread * np.minimum(ranges, before)) | (before >= longest)
+    spread = _JUMP + 2.0 * lidar.increment  # a surface seen at a slant recedes from beam to beam
+    new = (np.abs(ranges - before) > spread * np.minimum(ranges, before)) | ~_hit(before, lidar)
+    if not lidar.sees_all_around:
+        new[0] = True  # whatever the last beam sees is not beside it
     group = np.cumsum(new) % max(int(new.sum()), 1)  # the run before the first edge belongs to the last one
     order = np.lexsort((ranges, group))
     firsts = np.concatenate([[True], np.diff(group[order]) > 0])

@@ -38,9 +38,9 @@ def record_runs(runs: int = RUNS, seed: int = 0, **keywords: Any) -> NDArray[np.
         seed: Of the first one; the others follow.
         **keywords: Of the environment.
     """
-    keywords = {"radius": RADIUS} | keywords | {"robots": 2, "collision_ends": False, "expose_truth": True}
+    keywords = {"robot": {"radius": RADIUS}} | keywords | {"robots": 2, "collision_ends": False, "expose_truth": True}
     env = CorridorEnv(**keywords)
-    policy = PrioritizedFleet(env, deviation=False, planning_radius=env.options.radius)
+    policy = PrioritizedFleet(env, deviation=False, planning_radius=env.options.robot.radius)
     return np.concatenate([np.fromiter(_deviations(env, policy, seed + run), float) for run in range(runs)])
 
 

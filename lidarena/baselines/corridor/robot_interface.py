@@ -40,6 +40,7 @@ class Fleet:
 
     Attributes:
         robots: How many.
+        robot: What each is like.
         radius: Of each [m].
         period: Seconds between two actions.
         action: ``"continuous"`` or ``"discrete"``.
@@ -49,7 +50,8 @@ class Fleet:
     def __init__(self, env: Any) -> None:
         self._env = env.unwrapped
         options = self._env.options
-        self.robots, self.radius, self.period = options.robots, options.radius, options.decision_period
+        self.robots, self.robot, self.period = options.robots, options.robot, options.decision_period
+        self.radius = self.robot.radius
         self.action, self.tolerance = options.action, options.goal_tolerance
         self._central = isinstance(self._env, gym.Env)
         self._last: FleetState | None = None
@@ -80,7 +82,7 @@ class Fleet:
 
     def actions(self, commands: NDArray[np.float64], state: FleetState) -> Any:
         """Return the environment's actions for commands (k, 2) of speed [m/s] and turn rate [rad/s]."""
-        single = [action_for(self.action, float(speed), float(rate)) for speed, rate in commands]
+        single = [action_for(self.action, float(speed), float(rate), self.robot) for speed, rate in commands]
         if self._central:
             return np.stack(single)
         return {agent_name(robot): single[robot] for robot in np.flatnonzero(state.active).tolist()}

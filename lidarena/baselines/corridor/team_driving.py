@@ -6,8 +6,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines.corridor.robot_interface import FleetState
-from lidarena.envs.corridor.actions import TOP_SPEED, TOP_TURN_RATE
+from lidarena.envs.corridor.options import ROBOT
 from lidarena.planning.team.precedence import Precedence
+from lidarena.world.robots import RobotSpec
 
 Floats = NDArray[np.float64]
 
@@ -17,17 +18,17 @@ _TURN_FIRST = 0.9  # with a larger bearing it turns on the spot (rad)
 _STILL = 0.02  # nearer than this to its target it rests (m)
 
 
-def steer_to(pose: Floats, target: Floats) -> tuple[float, float]:
-    """Return the speed [m/s] and turn rate [rad/s] that take a robot (3,) to a point (2,) nearby."""
+def steer_to(pose: Floats, target: Floats, robot: RobotSpec = ROBOT) -> tuple[float, float]:
+    """Return the speed [m/s] and turn rate [rad/s] that take a robot at a pose (3,) to a point (2,) nearby."""
     dx, dy = target[0] - pose[0], target[1] - pose[1]
     away = math.hypot(dx, dy)
     if away < _STILL:
         return 0.0, 0.0
     bearing = math.remainder(math.atan2(dy, dx) - pose[2], 2.0 * math.pi)
-    rate = min(max(_TURN_GAIN * bearing, -TOP_TURN_RATE), TOP_TURN_RATE)
+    rate = min(max(_TURN_GAIN * bearing, -robot.max_turn_rate), robot.max_turn_rate)
     if abs(bearing) > _TURN_FIRST:
         return 0.0, rate
-    return min(away / _RESPONSE, TOP_SPEED) * math.cos(bearing), rate
+    return min(away / _RESPONSE, robot.max_speed) * math.cos(bearing), rate
 
 
 class ClockDriving:

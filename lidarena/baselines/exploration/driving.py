@@ -27,6 +27,7 @@ from lidarena.planning.grid.surroundings import Surroundings
 _NEARBY = 1.2  # half the side of the window that is looked at before every command (m)
 _NEAR_HITS = 0.6  # hits so near are remembered … (m)
 _REMEMBERED = 2.0  # … for so long (s)
+_LETHAL, _INFLATED = 0.22, 0.6  # paths keep off walls by the first, where they can by the second (m)
 _ESCAPE = 0.6  # how far around a robot in the lethal zone cells are opened (m)
 
 
@@ -55,23 +56,26 @@ class Driver:
 
     Attributes:
         robot: The robot.
-        inflation: How far to keep off the walls when planning paths.
+        inflation: How far to keep off the walls when planning paths. Like every other distance from walls it is that of
+            DA-SLAM's robot, and for another one larger by as much as it collides at a larger distance.
         arrival: Distance to the goal that counts as there (m).
     """
 
     robot: Robot
-    inflation: Inflation = field(default_factory=lambda: Inflation(lethal_radius=0.22, radius=0.6))
+    inflation: Inflation = field(init=False)
     arrival: float = 0.3
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
     goal: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         """Start with nothing planned."""
+        self._extra = self.robot.extra_room
+        self.inflation = Inflation(lethal_radius=_LETHAL + self._extra, radius=_INFLATED + self._extra)
         self.reset()
 
     def reset(self) -> None:
         """Forget the goal and everything planned."""
-        self._follower = PathFollower(self.robot.commands)
+        self._follower = PathFollower.with_extra_room(self.robot.commands, self._extra)
         self.stop()
         self._info: Mapping[str, Any] = {}
         self._observation: Any = None
@@ -87,7 +91,7 @@ class Driver:
         """Take in the environment's newest observation and info."""
         self._observation, self._info = observation, info
         self.pose = np.array(info["pose"], dtype=np.float64)
-        self._hits.append(self.robot.hits(observation, self.pose, _NEAR_HITS))
+        self._hits.append(self.robot.hits(observation, self.pose, _NEAR_HITS + self._extra))
         self._around = self._nearby()
         self._is_clear = self._follower.is_clear(self.pose, self._around)
 
@@ -96,7 +100,7 @@ class Driver:
         occupancy, resolution = self._info["map"], float(self._info["resolution"])
         x, y = (float(value) for value in self._info["origin"])
         row, col = int((self.pose[1] - y) / resolution), int((self.pose[0] - x) / resolution)
-        half = math.ceil(_NEARBY / resolution)
+        half = math.ceil((_NEARBY + self._extra) / resolution)
         rows, cols = _overlap(row, half, occupancy.shape[0]), _overlap(col, half, occupancy.shape[1])
         origin = (x + cols.start * resolution, y + rows.start * resolution)
         return self._surroundings(self._with_hits(occupancy[rows, cols], origin, resolution), origin)
@@ -130,7 +134,7 @@ class Driver:
         around = self._surroundings(crop, origin)
         cell = around.cell(self.pose[0], self.pose[1])
         cost = inflate(crop, resolution, self.inflation, around.gap)
-        open_start(cost, crop, around.gap, cell, math.ceil(_ESCAPE / resolution), self.inflation)
+        open_start(cost, crop, around.gap, cell, math.ceil((_ESCAPE + self._extra) / resolution), self.inflation)
         return Terrain(crop, cost, _reachable(cost, cell), around, cell)
 
     def go(self, goal: tuple[float, float], terrain: Terrain) -> bool:

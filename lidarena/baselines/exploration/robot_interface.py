@@ -10,17 +10,20 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.jit import kernel
-from lidarena.envs.exploration.observations import SECTORS
+from lidarena.envs.exploration.actions import box_action, discrete_commands
+from lidarena.envs.exploration.observations import ENTROPY
+from lidarena.envs.exploration.options import ROBOT, ExplorationOptions
+from lidarena.envs.exploration.scan_sectors import FRONT_ANGLES, SECTORS, sector_angles
+from lidarena.envs.registration import owner_of
 from lidarena.planning.grid.steering import Commands
-from lidarena.world.floorplan import START_CLEARANCE
 
-FULL_SPEED, TURN_SPEED, TURN_RATE = 0.5, 0.05, 0.3
-"""DA-SLAM's actions: forward at 0.5 m/s; left and right at 0.05 m/s and 0.3 rad/s."""
-_STEERED = [(FULL_SPEED, 0.0), (0.0, 1.0), (0.0, -1.0), (FULL_SPEED, 0.5), (FULL_SPEED, -0.5)]
-_BEAM_ANGLES = np.array([0.0, math.pi / 4, math.pi / 2, -math.pi / 4, -math.pi / 2])
-_MAX_RANGE = 3.5
-_TOUCH = 0.12  # a beam shorter than this ends the episode (m)
-_BEAM_SLACK = 0.03  # three sigma of the lidar (m)
+_SPEED, _TURN_RATE = 0.5, 1.0
+"""With continuous actions the robot is driven no faster than DA-SLAM's [m/s, rad/s]."""
+_STEERED = np.array([(1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.5), (1.0, -0.5)])
+_SLACK = 0.03
+"""Room beside the collision distance that commands leave, three sigma of DA-SLAM's lidar or of another one's [m]."""
+_PIECE = 0.1
+"""Commands are compared with hits at points of their way so far apart [m]."""
 
 
 class Robot:
@@ -30,43 +33,48 @@ class Robot:
         commands: What the robot can do. With discrete actions these are the three actions in their order, otherwise
             forward, turning on the spot and wide arcs.
         period: Seconds between two actions.
+        spec: Its size and limits.
     """
 
     def __init__(self, env: Any) -> None:
-        """Read the action space and the decision period of an exploration environment.
+        """Read the options of an exploration environment, wrapped or not.
 
         Raises:
             ConfigError: if its actions are neither ``Discrete(3)`` nor a box of two numbers.
         """
         space = getattr(env, "single_action_space", env.action_space)
-        self.period = _decision_period(env)
+        owner = owner_of(env, "options")
+        options = ExplorationOptions() if owner is None else owner.options
+        self.spec, self.period, self._lidar = options.robot, options.decision_period, options.lidar
+        self._observation = str(options.observation).removesuffix(ENTROPY)
         self._discrete = isinstance(space, gym.spaces.Discrete)
         if isinstance(space, gym.spaces.Discrete) and space.n == 3:
-            rows = [(FULL_SPEED, 0.0), (TURN_SPEED, TURN_RATE), (TURN_SPEED, -TURN_RATE)]
+            rows = discrete_commands(self.spec)
         elif isinstance(space, gym.spaces.Box) and space.shape == (2,):
-            rows = _STEERED
+            rows = _STEERED * (min(self.spec.max_speed, _SPEED), min(self.spec.max_turn_rate, _TURN_RATE))
         else:
             raise ConfigError(f"an action space {space}, allowed are Discrete(3) and a Box of shape (2,)")
         self.commands = Commands.of(rows, self.period)
 
+    @property
+    def extra_room(self) -> float:
+        """How much more room than DA-SLAM's robot it needs beside it (m)."""
+        return self.spec.bumper - ROBOT.bumper
+
     def action(self, command: int) -> Any:
         """Return the environment's action for a command."""
-        return command if self._discrete else self._box(*self.commands.velocities[command])
-
-    @staticmethod
-    def _box(v: float, w: float) -> NDArray[np.float32]:
-        # the environment's mapping: v = 0.25 (a0 + 1) m/s, w = a1 rad/s
-        return np.array([v / (0.5 * FULL_SPEED) - 1.0, w], dtype=np.float32)
+        return command if self._discrete else box_action(self.spec, *self.commands.velocities[command].tolist())
 
     def would_touch(self, command: int, observation: Any) -> bool:
         """Return whether the beams that were observed say that a command ends in a collision.
 
         A command that takes the robot away from what a beam has hit is never held against that beam.
         """
-        return bool(_touches(*_beams(observation), *self.commands.moves[command, :2]))
+        dx, dy = self.commands.moves[command, :2].tolist()
+        keep = self.spec.bumper + max(_SLACK, 3.0 * self._lidar.noise)
+        return bool(_touches(*self._beams(observation), self._lidar.max_range, keep, dx, dy))
 
-    @staticmethod
-    def hits(observation: Any, pose: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
+    def hits(self, observation: Any, pose: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
         """Return where the observed beams hit something, (n, 2) x, y (m).
 
         Args:
@@ -74,43 +82,54 @@ class Robot:
             pose: (3,) of the robot.
             reach: Hits farther away than this are left out (m).
         """
-        scan, angles = _beams(observation)
-        near = (scan > 0.0) & (scan * _MAX_RANGE < reach)
-        away, heading = scan[near] * _MAX_RANGE, angles[near] + pose[2]
+        scan, angles = self._beams(observation)
+        longest = self._lidar.max_range
+        near = (scan > 0.0) & (scan < 1.0) & (scan * longest < reach)
+        away, heading = scan[near] * longest, angles[near] + pose[2]
         points: NDArray[np.float64] = pose[:2] + np.column_stack([away * np.cos(heading), away * np.sin(heading)])
         return points
 
+    def _beams(self, observation: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Ranges over the largest one, and angles [rad], of the beams that an observation holds, (n,) each.
 
-def _beams(observation: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Ranges over the largest one, and angles [rad], of the beams that an observation holds, (n,) each."""
-    if isinstance(observation, Mapping):
-        scan = np.asarray(observation["scan"], np.float64)
-        return scan, np.linspace(0.0, 2.0 * math.pi, len(scan), endpoint=False)
-    numbers = np.asarray(observation, np.float64)
-    if len(numbers) > SECTORS:
-        ranges = numbers[:SECTORS]
-        if len(numbers) > 2 * SECTORS:  # the compass: nearness; rounded, as a free beam is to have the range 1
-            ranges = np.round(START_CLEARANCE / _MAX_RANGE / ranges, 5)
-        return ranges, np.linspace(0.0, 2.0 * math.pi, SECTORS, endpoint=False)
-    return numbers[: len(_BEAM_ANGLES)], _BEAM_ANGLES
-
-
-def _decision_period(env: Any) -> float:
-    inner = getattr(env, "unwrapped", env)
-    period = getattr(inner, "decision_period", None)
-    if period is None:
-        spec = getattr(env, "spec", None)
-        period = spec.kwargs.get("decision_period", 0.2) if spec is not None else 0.2
-    return float(period)
+        None of an observation that is not the environment's own.
+        """
+        if isinstance(observation, Mapping):
+            scan = np.asarray(observation["scan"], np.float64)
+            return scan, self._lidar.angles
+        numbers = np.asarray(observation, np.float64)
+        if self._observation == "sectors":
+            return numbers[:SECTORS], sector_angles()
+        if self._observation == "frontier_histogram":  # nearness; rounded, as a free beam is to have the range 1
+            touch = self.spec.contact_distance / self._lidar.max_range
+            return np.round(touch / numbers[:SECTORS], 5), sector_angles()
+        if self._observation == "da_slam":
+            return numbers[: len(FRONT_ANGLES)], np.array(FRONT_ANGLES)
+        return np.empty(0), np.empty(0)
 
 
 @kernel
-def _touches(scan: NDArray[np.float64], angles: NDArray[np.float64], dx: float, dy: float) -> bool:
-    """Whether (dx, dy) lies too near to what a beam of ``scan`` (n,) at ``angles`` (n,) hit, and nearer than before."""
+def _touches(
+    scan: NDArray[np.float64], angles: NDArray[np.float64], longest: float, keep: float, dx: float, dy: float
+) -> bool:
+    """Whether the way (dx, dy) leads nearer than ``keep`` to what a beam hit, and nearer than before.
+
+    Args:
+        scan: (n,) ranges over the longest.
+        angles: (n,) of the beams [rad].
+        longest: Range (m).
+        keep: (m).
+        dx: Ahead (m).
+        dy: To the left (m).
+    """
+    pieces = max(1, math.ceil(math.hypot(dx, dy) / _PIECE - 1e-6))
     for i in range(scan.shape[0]):
-        before = scan[i] * _MAX_RANGE
+        before = scan[i] * longest
         if 0.0 < scan[i] < 1.0:
-            after = math.hypot(before * math.cos(angles[i]) - dx, before * math.sin(angles[i]) - dy)
-            if after < _TOUCH + _BEAM_SLACK and after < before:
-                return True
+            x, y = before * math.cos(angles[i]), before * math.sin(angles[i])
+            for k in range(1, pieces + 1):
+                share = k / pieces
+                after = math.hypot(x - share * dx, y - share * dy)
+                if after < keep and after < before:
+                    return True
     return False

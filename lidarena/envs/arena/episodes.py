@@ -38,10 +38,10 @@ class ArenaEpisodes:
     """
 
     def __init__(self, worlds: int, options: ArenaOptions) -> None:
-        self.options, self.worlds, self.envs = options, worlds, worlds
-        self.core = ArenaCore(worlds, options)
+        self.core, self.worlds, self.envs = ArenaCore(worlds, options), worlds, worlds
+        self.options = self.core.options
         self.single_action_space: gym.Space[Any] = heading_space(options.action)
-        low = np.concatenate([np.zeros(options.beams + 1), np.full(2, -1.0)]).astype(np.float32)
+        low = np.concatenate([np.zeros(self.core.beam.beams + 1), np.full(2, -1.0)]).astype(np.float32)
         self.single_observation_space: gym.Space[Any] = gym.spaces.Box(low, np.ones_like(low), dtype=np.float32)
         observer = choose_observer(options.observation, OBSERVATIONS)
         self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds,))
@@ -106,10 +106,10 @@ class ArenaEpisodes:
         if self._own is not None:
             return self._own.observe(self._snapshot())
         core = self.core
-        out = np.empty((core.worlds, self.options.beams + 3), np.float32)
+        out = np.empty((core.worlds, core.beam.beams + 3), np.float32)
         proximity = self.options.observation == "proximity"
         far = _FAR * core.side
-        observe(core.physics.poses, core.goals, core.max_range, far, core.radii, proximity, core.measurements, out)
+        observe(core.physics.poses, core.goals, core.beam.max_range, far, core.radii, proximity, core.measurements, out)
         return out
 
     def infos(self) -> Info:

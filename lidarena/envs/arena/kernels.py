@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
-from lidarena.world.lidar import MapGeometry, add_range_noise, cast_beams
+from lidarena.world.lidar import NO_OUTLINE, LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
 
 
 class Measurements(NamedTuple):
@@ -19,6 +19,7 @@ class Measurements(NamedTuple):
         distance: (W,) to the goal [m].
         gap: (W,) least distance between the robot and anything else in the last step [m].
         path_length: (W,) of what was driven [m].
+        since_scan: (W,) time since the last scan [s].
     """
 
     ranges: NDArray[np.float64]
@@ -26,6 +27,7 @@ class Measurements(NamedTuple):
     distance: NDArray[np.float64]
     gap: NDArray[np.float64]
     path_length: NDArray[np.float64]
+    since_scan: NDArray[np.float64]
 
 
 @inlined
@@ -110,8 +112,8 @@ def sense(
     poses: NDArray[np.float64],
     plan: NDArray[np.int64],
     goals: NDArray[np.float64],
-    max_range: float,
-    noise: float,
+    period: float,
+    lidar: LidarSpec,
     geometry: MapGeometry,
     directions: NDArray[np.float64],
     streams: NDArray[np.uint64],
@@ -126,16 +128,17 @@ def sense(
         poses: (W, 1, 3) poses after it.
         plan: (W,) index of each world's plan in the geometry.
         goals: (W, 2) [m].
-        max_range: Of the lidar [m].
-        noise: Standard deviation of a range [m].
+        period: Duration of the step [s].
+        lidar: The lidar.
         geometry: The worlds.
         directions: (2, beams) cos and sin of the beams' angles.
         streams: (W, 4) random streams.
         measurements: Output.
     """
-    cast_beams(first, last, poses, plan, 0.0, geometry, directions, max_range, measurements.ranges)
-    add_range_noise(first, last, noise, max_range, streams, measurements.ranges, measurements.scans)
+    cast_beams(first, last, poses, plan, 0.0, NO_OUTLINE, geometry, directions, lidar, measurements.ranges)
     for w in range(first, last):
+        if scan_is_due(w, period, lidar, measurements.since_scan):
+            add_range_noise(w, w + 1, lidar, streams, measurements.ranges, measurements.scans)
         dx, dy = poses[w, 0, 0] - before[w, 0, 0], poses[w, 0, 1] - before[w, 0, 1]
         measurements.path_length[w] += math.sqrt(dx * dx + dy * dy)
         dx, dy = goals[w, 0] - poses[w, 0, 0], goals[w, 1] - poses[w, 0, 1]

@@ -1,11 +1,12 @@
 """Keywords of the arena environment, checked at the border."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypedDict
 
 import numpy as np
 
+from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.envs.arena.rewards import REWARDS
@@ -13,7 +14,10 @@ from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
 from lidarena.world.arenas import Arena, ArenaGenerator
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.lidar import LidarSpec
+from lidarena.world.lidars import check_lidar, gives_range, make_lidar
 from lidarena.world.random_arenas import DENSITY
+from lidarena.world.robots import RobotSpec, gives_size, make_robot
 
 ArenaSpec = str | Arena | Floorplan | ArenaGenerator
 OBSERVATIONS = ("ranges", "proximity")
@@ -26,9 +30,29 @@ _CHOICES = {
     "field": ("robust", "paper", "traditional"),
     "render_mode": (None, "rgb_array"),
 }
-_RANGES = {"speed": (1e-3, 100.0), "lidar_noise": (0.0, 10.0)}
-_OPTIONAL_RANGES = {"max_range": (0.01, 1000.0), "decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
-_WHOLE = {"arenas": (1, 10**9), "beams": (4, 3600)}
+_EARLIER = {
+    "beams": ("lidar", "beams"),
+    "max_range": ("lidar", "max_range"),
+    "lidar_noise": ("lidar", "noise"),
+    "speed": ("robot", "max_speed"),
+}
+_OPTIONAL_RANGES = {"decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
+_WHOLE = {"arenas": (1, 10**9)}
+
+
+class ToScale(LidarSpec):
+    """A lidar whose longest range is for a 100 m room, and to scale in others."""
+
+
+@dataclass(frozen=True)
+class OwnSize(RobotSpec):
+    """A robot as large as each arena's own."""
+
+
+ROBOT = OwnSize(max_speed=1.0, substep=0.03)
+"""Drives at 1 m/s; its size is each arena's own."""
+LIDAR = ToScale(beams=36, max_range=30.0, noise=0.0)
+"""36 exact beams all around, of 30 m in a 100 m room, and to scale in others."""
 
 
 class ArenaKeywords(TypedDict, total=False):
@@ -44,11 +68,9 @@ class ArenaKeywords(TypedDict, total=False):
     solvable: bool
     action: str
     observation: ObservationSpec
-    beams: int
-    max_range: float | None
-    lidar_noise: float
+    robot: RobotSpec | Mapping[str, Any] | str | None
+    lidar: LidarSpec | Mapping[str, Any] | str | None
     knowledge: str
-    speed: float
     decision_period: float | None
     goal_radius: float | None
     max_episode_steps: int | None
@@ -81,11 +103,15 @@ class ArenaOptions:
         action: ``"continuous"`` or ``"discrete"`` headings.
         observation: ``"ranges"`` shows the beams over the longest range, ``"proximity"`` the robot's radius over them,
             which tells near obstacles apart: 1 is contact; or one's own, see ``lidarena.envs.observers``.
-        beams: Of the lidar.
-        max_range: Of the lidar [m]; None: 30 m in a 100 m room, and to scale in others.
-        lidar_noise: Standard deviation of a range [m].
+        robot: A preset of :data:`lidarena.world.robots.ROBOTS`, a mapping of changes (to a ``preset``) such as
+            ``{"radius": 0.2, "max_speed": 0.3}``, a ``RobotSpec``, or ``"module:callable"`` that makes one. It drives
+            at ``max_speed``, 1 m/s by default, and turns on the spot before each step, so turn rate and reverse gear do
+            not matter; its size is the arena's own unless given, and with a ``collision_distance`` it has collided
+            before contact, too. Of an environment that was made: the ``RobotSpec`` that it stands for, where arenas'
+            own sizes differ of the largest; ``info["radius"]`` has each.
+        lidar: The same with the presets of :data:`lidarena.world.lidars.LIDARS` and a ``LidarSpec``; by default 36
+            exact beams all around, of 30 m in a 100 m room and to scale in others.
         knowledge: ``"map"`` gives the obstacles in ``info``, ``"lidar"`` only what the lidar sees.
-        speed: Of the robot [m/s].
         decision_period: Time between decisions [s]; None: 1 s in a 100 m room, and to scale in others.
         goal_radius: The goal is reached from this distance on [m]; None: 1 m in a 100 m room, and to scale in others.
         max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 500.
@@ -108,11 +134,9 @@ class ArenaOptions:
     solvable: bool = False
     action: str = "continuous"
     observation: ObservationSpec = "ranges"
-    beams: int = 36
-    max_range: float | None = None
-    lidar_noise: float = 0.0
+    robot: RobotSpec = ROBOT
+    lidar: LidarSpec = LIDAR
     knowledge: str = "map"
-    speed: float = 1.0
     decision_period: float | None = None
     goal_radius: float | None = None
     max_episode_steps: int = 500
@@ -134,8 +158,6 @@ class ArenaOptions:
         options = cls(**given)
         for name, allowed in _CHOICES.items():
             check_choice(name, getattr(options, name), allowed)
-        for name, (low, high) in _RANGES.items():
-            check_range(name, getattr(options, name), low, high)
         for name, (low, high) in _OPTIONAL_RANGES.items():
             if getattr(options, name) is not None:
                 check_range(name, getattr(options, name), low, high)
@@ -147,7 +169,25 @@ class ArenaOptions:
         choose_reward(options.reward, REWARDS)
         choose_observer(options.observation, OBSERVATIONS)
         options._check_arenas()
-        return options
+        return replace(options, robot=_robot_of(given.get("robot")), lidar=_lidar_of(given.get("lidar")))
+
+    def at_scale(self, scale: float, radius: float) -> "ArenaOptions":
+        """The same for arenas of a scale, with the lidar, periods and distances that were left to it.
+
+        Args:
+            scale: See :attr:`lidarena.world.arenas.Arena.scale`.
+            radius: Of the robot, where it is left to the arenas [m].
+
+        Raises:
+            ConfigError: The lidar scans more often than there are decisions, or sees no farther than its least range.
+        """
+        period, lidar, robot = self.decision_period or scale, LidarSpec(*self.lidar), self.robot
+        if isinstance(self.lidar, ToScale):
+            lidar = lidar._replace(max_range=lidar.max_range * scale)
+        if isinstance(robot, OwnSize):
+            robot = replace(_as(RobotSpec, robot), radius=radius)
+        check_lidar(lidar, period)
+        return replace(self, robot=robot, lidar=lidar, decision_period=period, goal_radius=self.goal_radius or scale)
 
     def _check_arenas(self) -> None:
         specs = self.specs
@@ -192,7 +232,29 @@ def modern_keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         ConfigError: Some are given under both.
     """
-    return reward_of_weights(keywords, _WEIGHTS, "default")
+    return reward_of_weights(nest_earlier("an arena environment", keywords, _EARLIER), _WEIGHTS, "default")
+
+
+def _robot_of(value: Any) -> RobotSpec:
+    """What the keyword says; an ``OwnSize`` where it says nothing of the size."""
+    robot = make_robot(value, ROBOT)
+    for name in ("max_turn_rate", "reverse"):
+        if isinstance(value, Mapping) and name in value:
+            raise ConfigError(
+                f"robot.{name} = {value[name]!r} has no meaning in an arena, where the robot turns on the spot before "
+                "it drives on; radius, outline, max_speed and collision_distance have"
+            )
+    return _as(RobotSpec if gives_size(value) else OwnSize, robot)
+
+
+def _as(kind: type[RobotSpec], robot: RobotSpec) -> RobotSpec:
+    return kind(**{field.name: getattr(robot, field.name) for field in fields(robot)})
+
+
+def _lidar_of(value: Any) -> LidarSpec:
+    """What the keyword says; one that is ``ToScale`` where it says nothing of the range."""
+    lidar = make_lidar(value, LIDAR, 0.0)
+    return (LidarSpec if gives_range(value) else ToScale)(*lidar)
 
 
 def _check_point(name: str, value: Any) -> None:

@@ -133,9 +133,9 @@ def _draw_forces(canvas: Canvas, land: PotentialGrid, path: NDArray[np.float64])
 def _draw_scan(canvas: Canvas, core: "ArenaCore", world: int) -> None:
     scan = core.measurements.scans[world, 0].astype(np.float64)
     pose = core.physics.poses[world, 0]
-    angles = np.arange(len(scan)) * (2 * np.pi / len(scan)) + pose[2]
+    angles = core.beam.angles + pose[2]
     points = pose[:2] + scan[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    canvas.dots(points[scan < core.max_range], RED, 2.4)
+    canvas.dots(points[(scan < core.beam.max_range) & (scan > 0.0)], RED, 2.4)
 
 
 def _draw_places(canvas: Canvas, land: PotentialGrid, goal: NDArray[np.float64]) -> None:

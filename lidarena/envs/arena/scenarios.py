@@ -62,19 +62,23 @@ class ScenarioGenerator:
 
     Args:
         options: Checked keywords.
+        radius: Of the robot [m]; None: each arena's own.
 
     Attributes:
         scale: Of all arenas, see :attr:`lidarena.world.arenas.Arena.scale`.
+        radius: Of the robot, where arenas' own differ the largest [m].
 
     Raises:
         MapError: An arena that cannot be loaded, or whose start or goal is in an obstacle.
         ConfigError: Arenas of different scales.
     """
 
-    def __init__(self, options: ArenaOptions) -> None:
-        self._options = options
+    def __init__(self, options: ArenaOptions, radius: float | None = None) -> None:
+        self._options, self._radius = options, radius
         self._entries = [entry for spec in options.specs for entry in _entries_of(spec, options)]
-        scales = {self.scenario(k, self._number(entry, 0)).arena.scale for k, entry in enumerate(self._entries)}
+        arenas = [self.scenario(k, self._number(entry, 0)).arena for k, entry in enumerate(self._entries)]
+        self.radius = max(arena.robot_radius for arena in arenas)
+        scales = {arena.scale for arena in arenas}
         if len(scales) > 1:
             raise ConfigError(
                 f"the arenas have the scales {sorted(scales)}; those of one environment must have the same, since "
@@ -120,15 +124,15 @@ class ScenarioGenerator:
         path = options.path if text.startswith("barn:") else None
         ends = tuple(None if end is None else tuple(end) for end in (options.start, options.goal))
         if isinstance(spec, Arena | Floorplan):
-            return _laid_out(load_arena(spec, start=ends[0], goal=ends[1]))
-        scenario = _named_scenario(text, path, chosen.density, ends)
+            return _laid_out(load_arena(spec, start=ends[0], goal=ends[1]), self._radius)
+        scenario = _named_scenario(text, path, chosen.density, ends, self._radius)
         if options.solvable and chosen.spec == "random" and not _has_path(scenario.arena):
             return self.scenario(entry, number + _NEXT_TRY)
         return scenario
 
     def _generated(self, generator: ArenaGenerator, number: int) -> Scenario:
         drawn = draw_arena(generator, number)
-        scenario = _laid_out(load_arena(drawn, start=self._options.start, goal=self._options.goal))
+        scenario = _laid_out(load_arena(drawn, start=self._options.start, goal=self._options.goal), self._radius)
         if scenario.arena.scale != getattr(self, "scale", scenario.arena.scale):
             raise MapError(
                 f"arena {scenario.arena.name!r} has scale {scenario.arena.scale:g}; those of one environment must all "
@@ -157,9 +161,13 @@ def _entries_of(spec: ArenaSpec, options: ArenaOptions) -> list[_Entry]:
 
 @lru_cache(maxsize=8192)
 def _named_scenario(
-    spec: str, path: str | None, density: float | None, ends: tuple[tuple[float, ...] | None, ...]
+    spec: str,
+    path: str | None,
+    density: float | None,
+    ends: tuple[tuple[float, ...] | None, ...],
+    radius: float | None,
 ) -> Scenario:
-    scenario = _laid_out(load_arena(spec, path=path, density=density, start=ends[0], goal=ends[1]))
+    scenario = _laid_out(load_arena(spec, path=path, density=density, start=ends[0], goal=ends[1]), radius)
     if path is None:
         return scenario
     reference = load_barn(int(spec.partition(":")[2]), path).reference
@@ -178,12 +186,13 @@ def _has_path(arena: Arena) -> bool:
     )
 
 
-def _laid_out(arena: Arena) -> Scenario:
+def _laid_out(arena: Arena, radius: float | None) -> Scenario:
     """Give every circle and the robot an extent, refuse ends inside of obstacles, and draw the room."""
     circles = make_scene(arena.circles, arena.start, arena.goal, bounds=arena.bounds).discs
     circles[:, 2] = np.maximum(circles[:, 2], _LEAST_OBSTACLE * arena.scale if arena.plan is None else 0.0)
     circles.flags.writeable = False
-    arena = replace(arena, circles=circles, robot_radius=max(arena.robot_radius, _LEAST_ROBOT * arena.scale))
+    own = max(arena.robot_radius, _LEAST_ROBOT * arena.scale)
+    arena = replace(arena, circles=circles, robot_radius=own if radius is None else radius)
     make_scene(arena.circles, arena.start, arena.goal, arena.robot_radius, arena.bounds)
     heading = float(np.arctan2(arena.goal[1] - arena.start[1], arena.goal[0] - arena.start[0]))
     start = (*arena.start, heading)

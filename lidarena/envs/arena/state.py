@@ -1,5 +1,6 @@
 """The arena worlds themselves, batched: physics, lidar, bookkeeping; no spaces, rewards or episodes."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -7,14 +8,12 @@ from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way_gap
-from lidarena.envs.arena.options import ArenaOptions
+from lidarena.envs.arena.options import ArenaOptions, OwnSize
 from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.lidar import MapGeometry
-from lidarena.world.physics import Physics, RobotSpec
+from lidarena.world.lidar import MapGeometry, first_scan
+from lidarena.world.physics import Physics
 
-LIDAR_RANGE = 30.0
-"""Longest range in a 100 m room [m]."""
 _MARGIN = 1e-3
 """Room beside the way below which the solver is asked whether the robot touches [m in a 100 m room]."""
 
@@ -29,11 +28,13 @@ class ArenaCore:
         options: Checked keywords.
 
     Attributes:
+        options: The keywords, with robot, lidar, periods and distances made out for these arenas.
+        robot: The robots, see ``ArenaOptions``.
+        beam: Their lidars.
         physics: Poses and contacts.
         scenarios: The arena of each world.
         measurements: What is measured of it.
         step_length: Driven in a decision period [m].
-        max_range: Of the lidar [m].
         goal_radius: The goal is reached from this distance on [m].
         side: Side of the room to which everything is to scale [m].
         goals: (worlds, 2) [m].
@@ -46,21 +47,20 @@ class ArenaCore:
     """
 
     def __init__(self, worlds: int, options: ArenaOptions) -> None:
-        self.worlds, self.options = worlds, options
-        self.generator = ScenarioGenerator(options)
+        radius = None if isinstance(options.robot, OwnSize) else options.robot.radius
+        self.worlds, self.generator = worlds, ScenarioGenerator(options, radius)
         scale = self.generator.scale
+        self.options = options.at_scale(scale, self.generator.radius)
+        self.robot, self.beam = self.options.robot, self.options.lidar
         self.side = 100.0 * scale
-        self.period = options.decision_period or scale
-        self.step_length = options.speed * self.period
-        self.max_range = options.max_range or LIDAR_RANGE * scale
-        self.goal_radius = options.goal_radius or scale
+        self.period, self.goal_radius = self.options.decision_period or scale, self.options.goal_radius or scale
+        self.step_length = self.robot.max_speed * self.period
         self.physics = Physics(worlds)
-        angles = np.arange(options.beams) * (2 * np.pi / options.beams)
-        self.directions = np.stack([np.cos(angles), np.sin(angles)])
+        self.directions = self.beam.directions
         self._allocate()
 
     def _allocate(self) -> None:
-        worlds, beams = self.worlds, self.options.beams
+        worlds, beams = self.worlds, self.beam.beams
         self.scenarios: list[Scenario | None] = [None] * worlds
         self.circles = np.empty(worlds, object)
         self.bounds = np.zeros((worlds, 4))
@@ -73,6 +73,7 @@ class ArenaCore:
         self.measurements = Measurements(
             np.zeros((worlds, 1, beams)),
             np.zeros((worlds, 1, beams), np.float32),
+            np.zeros(worlds),
             np.zeros(worlds),
             np.zeros(worlds),
             np.zeros(worlds),
@@ -129,6 +130,7 @@ class ArenaCore:
         self._place(world, scenario.plan, scenario.plan.start)
         self.turns[world] = 0.0
         self.measurements.path_length[world] = 0.0
+        self.measurements.since_scan[world] = first_scan(self.period, self.beam)
         self._sense(self.physics.poses, world, world + 1)
         x, y = scenario.arena.start
         self.measurements.gap[world] = way_gap(x, y, x, y, world, self.geometry) - self.radii[world]
@@ -145,8 +147,10 @@ class ArenaCore:
 
     def _place(self, world: int, plan: Floorplan, pose: tuple[float, float, float]) -> None:
         # half a radius a step: no body passes through another between two looks of the solver
-        substep = min(0.5 * float(self.radii[world]) / self.options.speed, 0.25 * self.period)
-        spec = RobotSpec(float(self.radii[world]), max_speed=self.options.speed, substep=substep)
+        radius = float(self.radii[world])
+        smallest = self.robot.inner_radius if self.robot.outline else radius
+        substep = min(0.5 * smallest / self.robot.max_speed, 0.25 * self.period)
+        spec = replace(self.robot, radius=radius, substep=substep)
         self.physics.place(world, plan, [pose], spec)
 
     def _meet(self, world: int) -> None:
@@ -169,14 +173,23 @@ class ArenaCore:
         for world in np.flatnonzero(self._near).tolist():
             self._meet(world)
         commands = np.zeros((self.worlds, 1, 2))
-        commands[:, 0, 0] = self.options.speed
+        commands[:, 0, 0] = self.robot.max_speed
         self.physics.advance(commands, self.period, self._near)
-        self.measurements.gap[self.physics.touched] = 0.0
+        self._judge()
         self._sense(before, 0, self.worlds)
+
+    def _judge(self) -> None:
+        """Tell who has collided, also without contact, and how near everybody has come."""
+        gap, touched = self.measurements.gap, self.physics.touched
+        if self.robot.collision_distance is not None:
+            touched |= gap < self.robot.collision_distance - self.radii
+        if self.robot.outline:  # corners may be away from what is inside of the circle about them
+            np.maximum(gap, 0.0, out=gap)
+        gap[self.physics.touched] = 0.0
 
     def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
         sense(
-            first, last, before, self.physics.poses, self._plan, self.goals, self.max_range, self.options.lidar_noise,
+            first, last, before, self.physics.poses, self._plan, self.goals, self.period, self.beam,
             self.geometry, self.directions, self.streams, self.measurements,
         )  # fmt: skip
 

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.compilation import announced_compilation
-from lidarena.envs.corridor.actions import TOP_SPEED, TOP_TURN_RATE, action_space, commands_of
+from lidarena.envs.corridor.actions import action_space, commands_of
 from lidarena.envs.corridor.kernels import write_observations
 from lidarena.envs.corridor.options import OBSERVATIONS, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch, TrailRecorder
@@ -46,14 +46,14 @@ class CorridorEpisodes:
 
     def __init__(self, worlds: int, options: CorridorOptions) -> None:
         self.options, self.core = options, CorridorCore(worlds, options)
-        self._numbers = options.beams + _EXTRA + NEIGHBOUR * options.neighbours
+        self._numbers = options.lidar.beams + _EXTRA + NEIGHBOUR * options.neighbours
         self.observation_space = gym.spaces.Box(-1.0, 1.0, (self._numbers,), np.float32)
         observer = choose_observer(options.observation, OBSERVATIONS, boxes_only=True)
         self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds, options.robots))
         if not isinstance(observer, str):
             assert isinstance(observer.space, gym.spaces.Box)
             self.observation_space = observer.space
-        self.action_space: gym.Space[Any] = action_space(options.action)
+        self.action_space: gym.Space[Any] = action_space(options.action, options.robot)
         self.trails = TrailRecorder(worlds) if options.render_mode is not None else None
         self.sketches = [TeamSketch() for _ in range(worlds)]
         shape = (worlds, options.robots)
@@ -93,7 +93,7 @@ class CorridorEpisodes:
         shape = self.finished.shape
         array = np.asarray(actions)
         flat = array.reshape(shape[0] * shape[1], *array.shape[2:]) if array.shape[:2] == shape else actions
-        commands = commands_of(self.options.action, flat, shape[0] * shape[1]).reshape(*shape, 2)
+        commands = commands_of(self.options.action, flat, shape[0] * shape[1], self.options.robot).reshape(*shape, 2)
         commands[self.finished] = 0.0
         before = self.core.measurements.remaining.copy()
         with nullcontext() if self._compiled else announced_compilation():
@@ -101,7 +101,7 @@ class CorridorEpisodes:
         self._compiled = True
         self.steps += 1
         active = ~self.finished
-        touching = active & (self.core.physics.touched_wall | self.core.physics.touched_robot)
+        touching = active & self.core.touching
         away = self.core.physics.poses[..., :2] - self.core.goals
         near = np.sqrt((away**2).sum(axis=-1)) <= self.options.goal_tolerance
         arriving = active & near & ~(touching & self.options.collision_ends)
@@ -144,7 +144,7 @@ class CorridorEpisodes:
             seen: NDArray[np.float32] = self._own.observe(self._snapshot(), hidden)
             return seen.reshape(*self.finished.shape, *self.observation_space.shape)
         out = np.empty((*self.finished.shape, self._numbers), np.float32)
-        top = np.array([TOP_SPEED, TOP_TURN_RATE])
+        top = np.array([self.options.robot.max_speed, self.options.robot.max_turn_rate])
         reach, neighbours = self.core.beam.max_range, self.options.neighbours
         write_observations(self.core.measurements, self.core.goals, hidden, reach, top, neighbours, out)
         return out
@@ -182,7 +182,7 @@ class CorridorEpisodes:
                 "map": np.broadcast_to(self._map, (worlds, *self._map.shape)),
                 "resolution": np.full(worlds, grid.resolution),
                 "origin": np.tile(np.array(grid.origin), (worlds, 1)),
-                "radius": np.full(worlds, self.options.radius),
+                "radius": np.full(worlds, self.options.robot.radius),
             }
         )
         if self.options.expose_truth:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import inlined, leaf, take_next
 from lidarena.base.random_streams import normal, uniform
 from lidarena.planning.team.moves import nearest_approach
-from lidarena.world.lidar import LidarSpec, MapGeometry, add_range_noise, cast_beams
+from lidarena.world.lidar import LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
 from lidarena.world.odometry import wrap
 from lidarena.world.physics import chord
 
@@ -78,6 +78,7 @@ class TeamMeasurements(NamedTuple):
         remaining: (W, R) length of the way to the goal, dearer near walls [m].
         lookahead_point: (W, R, 2) a point ahead on that way [m].
         closeness: (W, R) from 0 to 1: how near the nearest thing is, see ``CorridorEpisodes``.
+        since_scan: (W,) time since the last scan [s].
     """
 
     ranges: NDArray[np.float64]
@@ -87,6 +88,7 @@ class TeamMeasurements(NamedTuple):
     remaining: NDArray[np.float64]
     lookahead_point: NDArray[np.float64]
     closeness: NDArray[np.float64]
+    since_scan: NDArray[np.float64]
 
 
 @leaf
@@ -155,12 +157,14 @@ def find_near(
     commands: NDArray[np.float64],
     period: float,
     radius: float,
+    cornered: bool,
     poses: NDArray[np.float64],
     ground: Ground,
     near: NDArray[np.bool_],
 ) -> None:
     """Mark in ``near`` (W, R) the robots that may touch a wall or a robot in the next ``period``; see ``TeamPhysics``.
 
+    ``cornered``: robots have an outline within ``radius``, and may touch by turning, which discs cannot.
     Two robots are near each other if they come closer than their radii and a margin on the straight lines that they are
     about to drive; and with them is near who could be reached by a robot that a contact drives off its line.
     """
@@ -170,7 +174,8 @@ def find_near(
             v, rate = commands[w, r, 0], commands[w, r, 1]
             fastest = max(fastest, abs(v))
             x, y, theta = poses[w, r, 0], poses[w, r, 1], poses[w, r, 2]
-            near[w, r] = v != 0.0 and _passes_wall(x, y, theta, v, rate, period, radius + _MARGIN, ground)
+            moves = v != 0.0 or (cornered and rate != 0.0)
+            near[w, r] = moves and _passes_wall(x, y, theta, v, rate, period, radius + _MARGIN, ground)
         touch, reach = 2.0 * radius + _MARGIN, 2.0 * (radius + fastest * period) + _MARGIN
         for r in range(poses.shape[1]):
             for other in range(r):
@@ -181,7 +186,9 @@ def find_near(
                 bx, by = chord(poses[w, other, 2], commands[w, other, 0], commands[w, other, 1], period)
                 when = period * nearest_approach(dx, dy, (bx - ax) * period, (by - ay) * period)
                 dx, dy = dx + when * (bx - ax), dy + when * (by - ay)
-                if dx * dx + dy * dy < touch * touch and (ax != 0.0 or ay != 0.0 or bx != 0.0 or by != 0.0):
+                moves = ax != 0.0 or ay != 0.0 or bx != 0.0 or by != 0.0
+                moves = moves or (cornered and (commands[w, r, 1] != 0.0 or commands[w, other, 1] != 0.0))
+                if dx * dx + dy * dy < touch * touch and moves:
                     near[w, r] = True
                     near[w, other] = True
         _spread(poses, w, reach, near)
@@ -272,6 +279,7 @@ def sense(
     streams: NDArray[np.uint64],
     period: float,
     radius: float,
+    outline: NDArray[np.float64],
     fuzz: float,
     lidar: LidarSpec,
     geometry: MapGeometry,
@@ -292,6 +300,7 @@ def sense(
         streams: (W, 4) random streams.
         period: Of the decisions [s].
         radius: Of the robots [m].
+        outline: (n, 2) their corners [m]; (0, 2) for discs.
         fuzz: Standard deviation of the measured poses [m, rad].
         lidar: The lidar.
         geometry: The floor plans as ``Lidar`` laid them out.
@@ -303,8 +312,9 @@ def sense(
     """
     w = take_next(counter)
     while w < last:
-        cast_beams(w, w + 1, poses, plan, radius, geometry, directions, lidar.max_range, measurements.ranges)
-        add_range_noise(w, w + 1, lidar.noise, lidar.max_range, streams, measurements.ranges, measurements.scans)
+        cast_beams(w, w + 1, poses, plan, radius, outline, geometry, directions, lidar, measurements.ranges)
+        if scan_is_due(w, period, lidar, measurements.since_scan):
+            add_range_noise(w, w + 1, lidar, streams, measurements.ranges, measurements.scans)
         for r in range(poses.shape[1]):
             for k in range(3):
                 measurements.measured[w, r, k] = poses[w, r, k] + (fuzz * normal(streams[w]) if fuzz > 0.0 else 0.0)

@@ -1,16 +1,20 @@
 """Keywords of the multi-robot environments, checked at the border."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypedDict
 
+from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
 from lidarena.envs.corridor.rewards import REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.lidar import LidarSpec
+from lidarena.world.lidars import make_lidar
 from lidarena.world.load import MapSpec
+from lidarena.world.robots import RobotSpec, make_robot
 
 Points = Sequence[Sequence[float]]
 
@@ -18,17 +22,27 @@ MOST_ROBOTS = 64
 OBSERVATIONS = ("ranges",)
 _WEIGHTS = {f"{term}_weight": term for term in REWARDS.names}
 """Keywords of version 0.1, and the terms that they weigh."""
+ROBOT = RobotSpec(max_turn_rate=2.0, substep=0.07, reverse=True)
+"""TurtleBot3 Burgers, at up to 0.5 m/s forwards and backwards and 2 rad/s; two of them come at most 7 cm nearer to each
+other in a step of the physics."""
+LIDAR = LidarSpec(beams=36)
+"""36 beams of 3.5 m all around, noise of 1 cm."""
+_LARGEST_RADIUS = 1.0
+_LIDAR_RANGES = (0.5, 100.0)
+_EARLIER = {
+    "radius": ("robot", "radius"),
+    "beams": ("lidar", "beams"),
+    "lidar_range": ("lidar", "max_range"),
+    "lidar_noise": ("lidar", "noise"),
+}
 _RANGES = {
-    "radius": (0.02, 1.0),
-    "lidar_range": (0.5, 30.0),
-    "lidar_noise": (0.0, 1.0),
     "motion_noise": (0.0, 10.0),
     "localization_noise": (0.0, 1.0),
     "stall_rate": (0.0, 1.0),
     "decision_period": (0.02, 1.0),
     "goal_tolerance": (0.02, 1.0),
 }
-_WHOLE = {"robots": (1, MOST_ROBOTS), "beams": (4, 1440), "neighbours": (0, MOST_ROBOTS)}
+_WHOLE = {"robots": (1, MOST_ROBOTS), "neighbours": (0, MOST_ROBOTS)}
 _CHOICES = {"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")}
 
 
@@ -41,10 +55,8 @@ class CorridorKeywords(TypedDict, total=False):
     starts: Points | None
     goals: Points | None
     action: str
-    radius: float
-    beams: int
-    lidar_range: float
-    lidar_noise: float
+    robot: RobotSpec | Mapping[str, Any] | str | None
+    lidar: LidarSpec | Mapping[str, Any] | str | None
     neighbours: int
     motion_noise: float
     localization_noise: float
@@ -74,10 +86,12 @@ class CorridorOptions:
         starts: (robots, 2) x, y [m] in place of ``places``; with ``goals``.
         goals: (robots, 2) x, y [m].
         action: ``"continuous"`` or ``"discrete"``.
-        radius: Of every robot [m].
-        beams: Of every robot's lidar.
-        lidar_range: [m].
-        lidar_noise: Standard deviation of a range [m].
+        robot: Every robot: a preset of :data:`lidarena.world.robots.ROBOTS`, a mapping of changes (to a ``preset``)
+            such as ``{"radius": 0.2, "max_speed": 0.3}``, a ``RobotSpec``, or ``"module:callable"`` that makes one;
+            here the ``RobotSpec`` that it stands for. Without a ``collision_distance`` only contact is a collision,
+            with one a beam shorter than that, too.
+        lidar: Its lidar, the same with the presets of :data:`lidarena.world.lidars.LIDARS` and the ``LidarSpec`` that
+            it stands for.
         neighbours: How many of the nearest robots tell each robot where they are and how they move.
         motion_noise: Factor on the noise of the wheels (see ``corridor_kernels.apply_motion_noise``); 0 = they obey.
         localization_noise: Standard deviation of ``info["pose"]``: metres, and for the heading radians.
@@ -102,10 +116,8 @@ class CorridorOptions:
     starts: Points | None = None
     goals: Points | None = None
     action: str = "continuous"
-    radius: float = 0.105
-    beams: int = 36
-    lidar_range: float = 3.5
-    lidar_noise: float = 0.01
+    robot: RobotSpec = ROBOT
+    lidar: LidarSpec = LIDAR
     neighbours: int = 0
     motion_noise: float = 1.0
     localization_noise: float = 0.02
@@ -139,7 +151,11 @@ class CorridorOptions:
         choose_reward(options.reward, REWARDS)
         choose_observer(options.observation, OBSERVATIONS, boxes_only=True)
         options._check_rest()
-        return options
+        robot = make_robot(given.get("robot"), ROBOT)
+        check_range("robot.radius", robot.radius, 0.01, _LARGEST_RADIUS)
+        lidar = make_lidar(given.get("lidar"), LIDAR, options.decision_period)
+        check_range("lidar.max_range", lidar.max_range, *_LIDAR_RANGES)
+        return replace(options, robot=robot, lidar=lidar)
 
     def _check_rest(self) -> None:
         check_step_limit(self.max_episode_steps)
@@ -165,4 +181,4 @@ def modern_keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         ConfigError: Some are given under both.
     """
-    return reward_of_weights(keywords, _WEIGHTS, "default")
+    return reward_of_weights(nest_earlier("a corridor environment", keywords, _EARLIER), _WEIGHTS, "default")

@@ -272,7 +272,11 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
             value = np.empty(0, object)
         if space.shape != value.shape or value.dtype.kind not in ("iu" if space.shape == () else "iuf"):
             raise ActionError(f"the action {action!r} of agent {name!r} is not of its action space {space}")
-        inside = 0 <= value < 7 if space.shape == () else within_bounds(value.astype(np.float64)) is not None
+        inside = (
+            bool(space.contains(np.int64(value)))
+            if space.shape == ()
+            else within_bounds(value.astype(np.float64)) is not None
+        )
         if not inside:
             raise ActionError(f"the action {action!r} of agent {name!r} is NaN or outside of its action space {space}")
         return value

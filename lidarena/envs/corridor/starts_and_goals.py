@@ -54,7 +54,7 @@ class StartGoalSampler:
         if self._fixed is not None:
             self._check(*self._fixed)
             return
-        room = max(LEAST_ROOM, options.radius + 0.05)
+        room = max(LEAST_ROOM, options.robot.radius + 0.05)
         self._graph = grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(room))
         self._candidates = self._predefined() if self._mode() == "predefined" else self._anywhere()
 
@@ -150,7 +150,7 @@ class StartGoalSampler:
         if (places < 0).any():
             x, y = known.starts[int(np.argmax(places < 0))]
             raise TeamError(
-                f"a robot of radius {self._options.radius} m does not fit at the place ({x:g}, {y:g}) of map "
+                f"a robot of radius {self._options.robot.radius} m does not fit at the place ({x:g}, {y:g}) of map "
                 f"{self._plan.name!r}; a smaller radius is needed"
             )
         self._check_doors(places)
@@ -160,7 +160,7 @@ class StartGoalSampler:
         """Refuse robots that are wider than the doors between some predefined places."""
         if (self._graph.ahead(int(places[0]))[places] >= UNREACHABLE).any():
             raise TeamError(
-                f"robots of radius {self._options.radius} m are wider than the doors of map {self._plan.name!r}; "
+                f"robots of radius {self._options.robot.radius} m are wider than the doors of map {self._plan.name!r}; "
                 "a smaller radius is needed"
             )
 
@@ -177,13 +177,13 @@ class StartGoalSampler:
         if len(chosen) < self._options.robots:
             raise TeamError(
                 f"map {self._plan.name!r} has no room for {self._options.robots} robots of radius "
-                f"{self._options.radius} m"
+                f"{self._options.robot.radius} m"
             )
         return chosen
 
     def _check(self, starts: NDArray[np.float64], goals: NDArray[np.float64]) -> None:
         """Refuse places that no team can have."""
-        radius = self._options.radius
+        radius = self._options.robot.radius
         for kind, points in (("start", starts), ("goal", goals)):
             for robot, clearance in enumerate(self._plan.clearance(points)):
                 if clearance < radius:
@@ -202,15 +202,15 @@ class StartGoalSampler:
                 away = math.dist(points[i], points[j])
                 if away == 0.0:
                     raise TeamError(f"robots {j} and {i} share the {kind} ({points[i, 0]:g}, {points[i, 1]:g})")
-                if away < 2 * self._options.radius:
+                if away < 2 * self._options.robot.radius:
                     raise TeamError(
                         f"the {kind}s of robots {j} and {i} overlap: they are {away:.2f} m apart, "
-                        f"their radii need {2 * self._options.radius:g} m"
+                        f"their radii need {2 * self._options.robot.radius:g} m"
                     )
 
     def _check_reachable(self, starts: NDArray[np.float64], goals: NDArray[np.float64]) -> None:
         graph, points = (
-            grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(r)) for r in (self._options.radius, 0.0)
+            grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(r)) for r in (self._options.robot.radius, 0.0)
         )
         for robot, (start, goal) in enumerate(zip(starts, goals, strict=True)):
             if _leads(graph, self.grid, start, goal):
@@ -218,7 +218,7 @@ class StartGoalSampler:
             x, y = goal
             reason = "no free way connects them"
             if _leads(points, self.grid, start, goal):
-                reason = f"with a radius of {self._options.radius} m it is wider than every door on the way"
+                reason = f"with a radius of {self._options.robot.radius} m it is wider than every door on the way"
             raise TeamError(f"robot {robot} cannot reach its goal ({x:g}, {y:g}) from its start: {reason}")
 
 

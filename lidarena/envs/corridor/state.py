@@ -21,15 +21,12 @@ from lidarena.envs.corridor.starts_and_goals import StartGoalSampler
 from lidarena.envs.worker_threads import on_threads
 from lidarena.planning.grid.grid_search import path_costs
 from lidarena.planning.team.grid_graph import grid_graph_of
-from lidarena.world.lidar import Lidar, LidarSpec
+from lidarena.world.lidar import Lidar, first_scan
 from lidarena.world.load import load_floorplan
-from lidarena.world.physics import RobotSpec
 from lidarena.world.team_physics import TeamPhysics
 
 _FINE = 0.05
 """Cells in which clearances are looked up [m]."""
-_SUBSTEP = 0.07
-"""Of the physics [s]: two robots come at most 7 cm nearer in it."""
 _KEPT_FIELDS = 1024
 _WALL_GAP = 0.03
 """Ways keep so much more than the radius from walls [m]."""
@@ -61,8 +58,7 @@ class CorridorCore:
         self.options, self.worlds, self.robots = options, worlds, options.robots
         self.plan = load_floorplan(options.map)
         self.places = StartGoalSampler(options, self.plan)
-        self.robot = RobotSpec(radius=options.radius, max_turn_rate=2.0, substep=_SUBSTEP)
-        self.beam = LidarSpec(options.beams, options.lidar_range, options.lidar_noise)
+        self.robot, self.beam = options.robot, options.lidar
         self.lidar = Lidar([self.plan], self.beam)
         self.physics = TeamPhysics(worlds, self.robots, self.robot)
         for world in range(worlds):
@@ -77,10 +73,10 @@ class CorridorCore:
         grid = self.places.grid
         self.ground = Ground(clearance, fine.origin.copy(), _FINE, np.array(grid.origin), grid.resolution)
         coarse = self.plan.raster(grid.resolution)
-        beyond = coarse.clearance.astype(np.float64) - self.options.radius
+        beyond = coarse.clearance.astype(np.float64) - self.robot.radius
         cost = 1.0 + _WALL_COST * np.clip(1.0 - beyond / _COMFORT, 0.0, 1.0)
         self._costs = np.where(grid.blocked | (beyond < _WALL_GAP), np.inf, cost)
-        fitting = grid_graph_of(grid.blocked, 8, grid.in_cells(self.options.radius)).index >= 0
+        fitting = grid_graph_of(grid.blocked, 8, grid.in_cells(self.robot.radius)).index >= 0
         self._tight_costs = np.where(fitting | np.isfinite(self._costs), cost, np.inf)
         self._known: OrderedDict[tuple[int, int, bool], NDArray[np.float32]] = OrderedDict()
 
@@ -102,6 +98,7 @@ class CorridorCore:
             np.zeros(shape),
             np.zeros((*shape, 2)),
             np.zeros(shape),
+            np.zeros(self.worlds),
         )
 
     def reset_world(self, world: int, rng: np.random.Generator) -> None:
@@ -109,6 +106,7 @@ class CorridorCore:
         starts, goals = self.places.draw(rng)
         self.starts[world], self.goals[world] = starts, goals
         self.streams[world] = seed_stream(rng)
+        self.measurements.since_scan[world] = first_scan(self.options.decision_period, self.beam)
         self._speed_bias[world] = self._noise.speed_bias * rng.standard_normal(self.robots)
         self._stalled[world] = self.travelled[world] = 0.0
         self._look_up_ways(world)
@@ -152,10 +150,18 @@ class CorridorCore:
         apply_motion_noise(
             commands, period, self._noise, self.options.stall_rate, self.streams, self._speed_bias, self._stalled
         )
-        find_near(commands, period, self.robot.radius, before, self.ground, self._near)
+        find_near(commands, period, self.robot.radius, bool(self.robot.outline), before, self.ground, self._near)
         self.physics.advance(commands, period, self._near)
         self.travelled += np.sqrt(((self.physics.poses - before)[..., :2] ** 2).sum(axis=-1))
         self._perceive(before, 0, self.worlds)
+
+    @property
+    def touching(self) -> NDArray[np.bool_]:
+        """(worlds, robots) whether a robot has touched something in the last step, or come nearer than it may."""
+        touching: NDArray[np.bool_] = self.physics.touched_wall | self.physics.touched_robot
+        if self.robot.collision_distance is not None:
+            touching |= self.measurements.ranges.min(axis=2) < self.robot.collision_distance
+        return touching
 
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Let the robots of worlds first … last - 1 sense."""
@@ -164,7 +170,7 @@ class CorridorCore:
             last - first,
             lambda thread: sense(
                 counter, last, before, self.physics.poses, self._plan_of, self.streams, self.options.decision_period,
-                self.robot.radius, self.options.localization_noise, self.beam, self.lidar.geometry,
+                self.robot.radius, self.robot.corners, self.options.localization_noise, self.beam, self.lidar.geometry,
                 self.lidar.directions, self.ground, self.fields, self.goals, self.measurements,
             ),
         )  # fmt: skip

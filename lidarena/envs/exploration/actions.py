@@ -8,23 +8,27 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import ActionError
 from lidarena.envs.action_bounds import within_bounds
+from lidarena.envs.exploration.options import ROBOT
+from lidarena.world.robots import RobotSpec
 
-COMMANDS = np.array([(0.5, 0.0), (0.05, 0.3), (0.05, -0.3)])
-"""DA-SLAM's forward, left and right: speed [m/s] and turn rate [rad/s]."""
-TOP_SPEED = 0.5
-"""Forward speed of the continuous action 1 [m/s]; -1 stands still."""
-TOP_TURN_RATE = 1.0
-"""Turn rate of the continuous action 1 [rad/s]."""
+SHARES = np.array([(1.0, 0.0), (0.1, 0.3), (0.1, -0.3)])
+"""DA-SLAM's forward, left and right, over the fastest speed and turn rate: 0.5 m/s; 0.05 m/s and 0.3 rad/s."""
+
+
+def discrete_commands(robot: RobotSpec) -> NDArray[np.float64]:
+    """Speeds [m/s] and turn rates [rad/s] (3, 2) of a robot's discrete actions: DA-SLAM's, to its limits."""
+    commands: NDArray[np.float64] = SHARES * (robot.max_speed, robot.max_turn_rate)
+    return commands
 
 
 def action_space(kind: str) -> gym.Space[Any]:
     """``Discrete(3)``, or ``Box(-1, 1, (2,))`` of speed and turn rate."""
     if kind == "discrete":
-        return gym.spaces.Discrete(len(COMMANDS))
+        return gym.spaces.Discrete(len(SHARES))
     return gym.spaces.Box(-1.0, 1.0, (2,), np.float32)
 
 
-def commands_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
+def commands_of(kind: str, actions: Any, worlds: int, robot: RobotSpec = ROBOT) -> NDArray[np.float64]:
     """Commands ``(worlds, 2)``, speed [m/s] and turn rate [rad/s], of one action a world.
 
     Raises:
@@ -32,15 +36,7 @@ def commands_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
     """
     values = np.asarray(actions)
     if kind == "discrete":
-        if values.shape != (worlds,) or values.dtype.kind not in "iu":
-            whole = values.shape == (worlds,) and values.dtype.kind == "f" and np.array_equal(values, values.round())
-            hint = "; convert it to an integer" if whole else ""
-            raise ActionError(f"action {_show(actions, worlds)} is not one of the whole numbers 0, 1, 2{hint}")
-        if ((values < 0) | (values >= len(COMMANDS))).any():
-            raise ActionError(
-                f"action {_show(actions, worlds)} is out of range; 0 (forward), 1 (left), 2 (right) are allowed"
-            )
-        commands: NDArray[np.float64] = COMMANDS[values]
+        commands: NDArray[np.float64] = discrete_commands(robot)[_checked_numbers(actions, values, worlds)]
         return commands
     if values.shape != (worlds, 2) or values.dtype.kind not in "iuf":
         raise ActionError(
@@ -49,7 +45,26 @@ def commands_of(kind: str, actions: Any, worlds: int) -> NDArray[np.float64]:
     numbers = within_bounds(values.astype(np.float64))
     if numbers is None:
         raise ActionError(f"action {_show(actions, worlds)} is NaN or out of range; numbers from -1 to 1 are allowed")
-    return np.stack([0.5 * TOP_SPEED * (numbers[:, 0] + 1.0), TOP_TURN_RATE * numbers[:, 1]], axis=1)
+    speeds = robot.max_speed * numbers[:, 0] if robot.reverse else 0.5 * robot.max_speed * (numbers[:, 0] + 1.0)
+    return np.stack([speeds, robot.max_turn_rate * numbers[:, 1]], axis=1)
+
+
+def box_action(robot: RobotSpec, speed: float, rate: float) -> NDArray[np.float32]:
+    """The continuous action of a command: speed [m/s] and turn rate [rad/s] within the robot's limits."""
+    ahead = speed / robot.max_speed if robot.reverse else speed / (0.5 * robot.max_speed) - 1.0
+    return np.array([ahead, rate / robot.max_turn_rate], dtype=np.float32)
+
+
+def _checked_numbers(actions: Any, values: NDArray[Any], worlds: int) -> NDArray[Any]:
+    if values.shape != (worlds,) or values.dtype.kind not in "iu":
+        whole = values.shape == (worlds,) and values.dtype.kind == "f" and np.array_equal(values, values.round())
+        hint = "; convert it to an integer" if whole else ""
+        raise ActionError(f"action {_show(actions, worlds)} is not one of the whole numbers 0, 1, 2{hint}")
+    if ((values < 0) | (values >= len(SHARES))).any():
+        raise ActionError(
+            f"action {_show(actions, worlds)} is out of range; 0 (forward), 1 (left), 2 (right) are allowed"
+        )
+    return values
 
 
 def _show(actions: Any, worlds: int) -> str:

@@ -6,11 +6,15 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.world.floorplan import START_CLEARANCE, Floorplan
+from lidarena.base.errors import MapError
+from lidarena.world.floorplan import Floorplan
 from lidarena.world.raster import Raster
+from lidarena.world.robots import BUMPER, RobotSpec
 
 START_MARGIN = 0.25
-"""Random starts keep this far from every wall [m]."""
+"""Random starts keep this far from every wall [m] …"""
+_START_ROOM = 0.05
+"""… and this much farther than a collision is, if that is more."""
 
 
 class Coverage(NamedTuple):
@@ -27,26 +31,50 @@ class Coverage(NamedTuple):
     origin: NDArray[np.float64]
 
 
-def measure_coverage(plan: Floorplan, resolution: float, radius: float) -> Coverage:
+def measure_coverage(plan: Floorplan, resolution: float, robot: RobotSpec) -> Coverage:
     """Find K, against whose size completeness is measured: |known ∩ K| / |K|.
 
-    A cell is wanted if the robot's disc, moving from the plan's start with its centre at least ``START_CLEARANCE`` from
-    every wall, can cover it, or if it is a wall cell whose surface borders such cells: 100% is attainable in every
-    world. (Counting the whole grid, as DA-SLAM's code does, would end at a share that depends on the drawing.)
+    A cell is wanted if the robot's disc, grown by what its collision distance asks for, can cover it, moving from the
+    plan's start with its centre at least that distance from every wall, or if it is a wall cell whose surface borders
+    such cells: 100% is attainable in every world. (Counting the whole grid, as DA-SLAM's code does, would end at a
+    share that depends on the drawing.)
 
     Args:
         plan: The floor plan, with its start.
         resolution: Side of a cell [m].
-        radius: Of the robot [m].
+        robot: Of an outline counts the circle that holds it, which can turn wherever it is.
+
+    Raises:
+        MapError: The robot does not fit where the plan's start is.
     """
     raster = plan.raster(resolution)
-    passable = ~raster.solid & (raster.clearance >= START_CLEARANCE)
+    passable = ~raster.solid & (raster.clearance >= robot.bumper)
     reached = _connected(passable, raster, plan.start)
+    if not reached.any():
+        raise _no_room(plan, robot)
     away = cv2.distanceTransform((~reached).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * resolution
-    covered = ~raster.solid & (away <= radius + 0.5 * resolution)
+    covered = ~raster.solid & (away <= robot.bumper - BUMPER + 0.5 * resolution)
     beside = cv2.dilate(covered.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
     surface = raster.solid & (raster.clearance <= 0.55 * resolution)
-    return Coverage(covered | (surface & beside), _start_places(reached, raster), raster.origin)
+    return Coverage(covered | (surface & beside), _start_places(reached, raster, robot), raster.origin)
+
+
+def check_start(plan: Floorplan, robot: RobotSpec) -> None:
+    """Refuse a floor plan at whose start the robot would collide.
+
+    Raises:
+        MapError: It names the start.
+    """
+    if plan.clearance(np.array([plan.start[:2]]))[0] < robot.bumper:
+        raise _no_room(plan, robot)
+
+
+def _no_room(plan: Floorplan, robot: RobotSpec) -> MapError:
+    x, y, _ = plan.start
+    return MapError(
+        f"a robot that collides at {robot.bumper:g} m from its centre does not fit at the start ({x:g}, {y:g}) of map "
+        f"{plan.name!r}; a smaller robot or collision_distance, or another start is needed"
+    )
 
 
 def _connected(passable: NDArray[np.bool_], raster: Raster, start: tuple[float, float, float]) -> NDArray[np.bool_]:
@@ -60,7 +88,7 @@ def _connected(passable: NDArray[np.bool_], raster: Raster, start: tuple[float, 
     return reached
 
 
-def _start_places(reached: NDArray[np.bool_], raster: Raster) -> NDArray[np.float64]:
-    roomy = reached & (raster.clearance >= START_MARGIN)
+def _start_places(reached: NDArray[np.bool_], raster: Raster, robot: RobotSpec) -> NDArray[np.float64]:
+    roomy = reached & (raster.clearance >= max(START_MARGIN, robot.bumper + _START_ROOM))
     cells = np.argwhere(roomy if roomy.any() else reached)
     return raster.origin + (cells[:, ::-1] + 0.5) * raster.resolution

@@ -48,7 +48,7 @@ class ExplorationEpisodes:
         self._own = None if own is None else OneByOne(own, (worlds,))
         if isinstance(look, str) and look.endswith(ENTROPY):
             check_entropy(self.core)
-        self.observer = make_observer(look if isinstance(look, str) else "da_slam", parts, self.core.beam.beams)
+        self.observer = make_observer(look if isinstance(look, str) else "da_slam", parts, options.lidar)
         self.single_observation_space = self.observer.space if own is None else own.space
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
         self._steps = np.zeros(worlds, np.int64)
@@ -87,7 +87,7 @@ class ExplorationEpisodes:
         Raises:
             ActionError: See ``drive_actions.commands_of``.
         """
-        commands = commands_of(self.options.action, actions, self.core.worlds)
+        commands = commands_of(self.options.action, actions, self.core.worlds, self.core.robot)
         with nullcontext() if self._compiled else announced_compilation():
             self.core.step(commands)
         self._compiled = True

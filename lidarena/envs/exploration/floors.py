@@ -7,12 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import MapError
-from lidarena.envs.exploration.coverage import Coverage, measure_coverage
+from lidarena.envs.exploration.coverage import Coverage, check_start, measure_coverage
 from lidarena.world.changing_lidar import ChangingLidar
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import MapSpec, generator_of, load_floorplan
 from lidarena.world.plan_generators import PlanGenerator, draw_plan, generator_name, largest_size, size_of
+from lidarena.world.robots import RobotSpec
 
 _MARGIN = 0.5
 """How far the grid of a map reaches beyond its plan [m], see ``Floorplan.raster``."""
@@ -49,7 +50,13 @@ class Floors(Protocol):
 
 
 def make_floors(
-    worlds: int, specs: Sequence[MapSpec], start: Pose | None, lidar: LidarSpec, resolution: float, radius: float
+    worlds: int,
+    specs: Sequence[MapSpec],
+    start: Pose | None,
+    lidar: LidarSpec,
+    resolution: float,
+    robot: RobotSpec,
+    at_start: bool,
 ) -> Floors:
     """Make the floor plans of a batch.
 
@@ -59,7 +66,8 @@ def make_floors(
         start: Start pose instead of the plans' own.
         lidar: Of the robots.
         resolution: Side of a map cell [m].
-        radius: Of the robot [m].
+        robot: The robots.
+        at_start: Whether episodes begin at the plans' starts.
 
     Raises:
         ConfigError: A generator that there is not.
@@ -72,17 +80,19 @@ def make_floors(
     ]
     plans = [plan for plan in fixed if plan is not None]
     if len(plans) == len(specs):
-        return FixedFloors(plans, lidar, resolution, radius)
+        return FixedFloors(plans, lidar, resolution, robot, at_start)
     sources = [plan or generator for plan, generator in zip(fixed, generators, strict=True)]
-    return DrawnFloors(worlds, sources, start, lidar, resolution, radius)
+    return DrawnFloors(worlds, sources, start, lidar, resolution, robot, at_start)
 
 
 class FixedFloors:
     """Floor plans that never change, shared by all worlds; see ``Floors`` and ``make_floors``."""
 
-    def __init__(self, plans: list[Floorplan], lidar: LidarSpec, resolution: float, radius: float) -> None:
+    def __init__(
+        self, plans: list[Floorplan], lidar: LidarSpec, resolution: float, robot: RobotSpec, at_start: bool
+    ) -> None:
         self.plans, self.lidar = plans, Lidar(plans, lidar)
-        self._coverage = [_measured(plan, resolution, radius) for plan in plans]
+        self._coverage = [_measured(plan, resolution, robot, at_start) for plan in plans]
         self.wanted_cells = np.array([coverage.wanted.sum() for coverage in self._coverage])
         self.areas = np.array([_area(plan) for plan in plans])
         rows, columns = np.max([coverage.wanted.shape for coverage in self._coverage], axis=0)
@@ -121,9 +131,11 @@ class DrawnFloors:
         start: Pose | None,
         lidar: LidarSpec,
         resolution: float,
-        radius: float,
+        robot: RobotSpec,
+        at_start: bool,
     ) -> None:
-        self._sources, self._start, self._resolution, self._radius = sources, start, resolution, radius
+        self._sources, self._start, self._resolution = sources, start, resolution
+        self._robot, self._at_start = robot, at_start
         sizes = [size_of(one) if isinstance(one, Floorplan) else largest_size(one) for one in sources if one]
         self.size = max(width for width, _ in sizes), max(height for _, height in sizes)
         columns, rows = (int(np.ceil((side + 2 * _MARGIN) / resolution)) + 1 for side in self.size)
@@ -149,7 +161,7 @@ class DrawnFloors:
         plan = maker if isinstance(maker, Floorplan) else self._drawn_plan(maker, number)
         while len(self.plans) <= world:
             self.plans.append(plan)
-        coverage = _measured(plan, self._resolution, self._radius)
+        coverage = _measured(plan, self._resolution, self._robot, self._at_start)
         self.plans[world], self._coverages[world] = plan, coverage
         self.wanted[world] = 0
         _write(self.wanted[world], coverage)
@@ -181,12 +193,10 @@ class DrawnFloors:
                 self._lay(world)
 
 
-def _measured(plan: Floorplan, resolution: float, radius: float) -> Coverage:
-    coverage = measure_coverage(plan, resolution, radius)
-    if not coverage.wanted.any():
-        x, y, _ = plan.start
-        raise MapError(f"map {plan.name!r} has no room for a robot of radius {radius:g} m at its start ({x:g}, {y:g})")
-    return coverage
+def _measured(plan: Floorplan, resolution: float, robot: RobotSpec, at_start: bool) -> Coverage:
+    if at_start:
+        check_start(plan, robot)
+    return measure_coverage(plan, resolution, robot)
 
 
 def _write(wanted: NDArray[np.uint8], coverage: Coverage) -> None:

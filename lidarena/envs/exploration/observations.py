@@ -10,14 +10,11 @@ from numpy.typing import NDArray
 from lidarena.base.errors import ConfigError
 from lidarena.base.jit import leaf
 from lidarena.envs.exploration.frontier_directions import frontier_histogram, mean_direction
+from lidarena.envs.exploration.scan_sectors import FRONT_ANGLES, SECTORS, ScanSectors, front_beams
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
 from lidarena.slam.registry import estimator_name
-from lidarena.world.floorplan import START_CLEARANCE
+from lidarena.world.lidar import LidarSpec
 
-FRONT_BEAMS = (0, 45, 90, 315, 270)
-"""Beams of DA-SLAM's observation: 0, 45, 90, -45 and -90 degrees."""
-SECTORS = 36
-"""Sectors of equal width, the first one centred straight ahead."""
 PICTURE = 64
 """Rows and columns of the egocentric picture."""
 PICTURE_CELL = 0.1
@@ -44,12 +41,17 @@ class DaSlamObserver:
     Args:
         action_parts: Numbers that the previous action takes up.
         entropy: Whether the last entry is the entropy.
+        lidar: Whose beams they are.
+
+    Raises:
+        ConfigError: The lidar has no such beams.
     """
 
-    looks = len(FRONT_BEAMS)
+    looks = len(FRONT_ANGLES)
 
-    def __init__(self, action_parts: int, entropy: bool = False) -> None:
+    def __init__(self, action_parts: int, lidar: LidarSpec, entropy: bool = False) -> None:
         self._entropy = entropy
+        self._attend(lidar)
         self.space: gym.Space[Any] = gym.spaces.Box(0.0, 1.0, (self.looks + action_parts + 1,), np.float32)
 
     def observe(self, core: ExplorationCore, previous: NDArray[np.float64]) -> NDArray[np.float32]:
@@ -57,38 +59,47 @@ class DaSlamObserver:
         last = scaled_entropy(core) if self._entropy else core.completeness
         return np.concatenate([self._look(core), previous, last[:, None]], axis=1, dtype=np.float32)
 
+    def _attend(self, lidar: LidarSpec) -> None:
+        """Find out which beams to look at."""
+        self._beams = front_beams(lidar)
+
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
         """What is seen, in [0, 1], (worlds, looks)."""
-        seen: NDArray[np.float32] = core.sensors.scans[:, 0, FRONT_BEAMS]
+        seen: NDArray[np.float32] = core.sensors.scans[:, 0, self._beams]
         return seen / core.beam.max_range
 
 
 class SectorObserver(DaSlamObserver):
     """DA-SLAM's state with the nearest hit in each of ``SECTORS`` sectors in place of five single beams.
 
-    Nothing fits between the beams of a sector, where DA-SLAM's five leave 45 degrees unseen.
+    Nothing fits between the beams of a sector, where DA-SLAM's five leave 45 degrees unseen. Sectors out of the lidar's
+    view are 1, as without a hit.
     """
 
     looks = SECTORS
 
+    def _attend(self, lidar: LidarSpec) -> None:
+        self._sectors = ScanSectors(lidar)
+
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
-        return nearest_hits(core.sensors.scans[:, 0]) / core.beam.max_range
+        return self._sectors.nearest_hits(core.sensors.scans[:, 0]) / core.beam.max_range
 
 
-class FrontierHistogramObserver(DaSlamObserver):
+class FrontierHistogramObserver(SectorObserver):
     """DA-SLAM's state with walls as near as they are, and which way to drive, in place of five beams.
 
-    First how near the nearest hit in each sector is, ``START_CLEARANCE`` over the range: a wall far off, which says
-    little, hardly shows, whereas the range itself differs most there. Then how much of the map's edge each sector leads
-    to, see ``frontier_histogram``, and their mean direction as (1 + cos) / 2 and (1 + sin) / 2.
+    First how near the nearest hit in each sector is, the range at which the robot's bumper touches over the range: a
+    wall far off, which says little, hardly shows, whereas the range itself differs most there. Then how much of the
+    map's edge each sector leads to, see ``frontier_histogram``, and their mean direction as
+    (1 + cos) / 2 and (1 + sin) / 2.
     """
 
     looks = 2 * SECTORS + 2
 
     def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
-        nearest = nearest_hits(core.sensors.scans[:, 0])
+        nearest, touch = self._sectors.nearest_hits(core.sensors.scans[:, 0]), np.float32(core.robot.contact_distance)
         edge = frontier_histogram(core.maps.occupancy, core.maps.origin, core.estimate, nearest, RESOLUTION)
-        near = np.float32(START_CLEARANCE) / np.maximum(nearest, np.float32(START_CLEARANCE))
+        near = touch / np.maximum(nearest, touch)
         return np.concatenate([near, edge, mean_direction(edge)], axis=1)
 
 
@@ -97,7 +108,7 @@ class MapObserver:
 
     - ``map`` (3, 64, 64) uint8: 6.4 m × 6.4 m of the believed map around the believed pose, the robot in the middle,
       heading up; 255 where a pixel holds an occupied cell, a free cell, and no known cell at all (three channels).
-    - ``scan`` (360,) float32: all beams over the maximum range, the first one straight ahead, counter-clockwise.
+    - ``scan`` (beams,) float32: all beams over the maximum range; see ``LidarSpec`` for where they point.
     - ``covariance`` (6,) float32, see ``scaled_covariance``: how uncertain the pose is.
     - ``state`` float32: previous action (as in DA-SLAM's observation), completeness, entropy over ln N.
 
@@ -138,19 +149,15 @@ ENTROPY = "_entropy"
 """End of the names of the same observations with the entropy in the last place."""
 
 
-def make_observer(kind: str, action_parts: int, beams: int) -> Observer:
-    """Make what the keyword ``observation`` names, one of ``options.OBSERVATIONS``."""
+def make_observer(kind: str, action_parts: int, lidar: LidarSpec) -> Observer:
+    """Make what the keyword ``observation`` names, one of ``options.OBSERVATIONS``.
+
+    Raises:
+        ConfigError: The lidar does not see what it shows.
+    """
     if kind == "map":
-        return MapObserver(action_parts, beams)
-    return FLAT[kind.removesuffix(ENTROPY)](action_parts, kind.endswith(ENTROPY))
-
-
-def nearest_hits(scans: NDArray[np.float32]) -> NDArray[np.float32]:
-    """The nearest hit of each sector [m], (worlds, SECTORS), in scans (worlds, beams)."""
-    width = scans.shape[1] // SECTORS
-    around = np.roll(scans, width // 2, axis=1).reshape(len(scans), SECTORS, width)
-    nearest: NDArray[np.float32] = around.min(axis=2)
-    return nearest
+        return MapObserver(action_parts, lidar.beams)
+    return FLAT[kind.removesuffix(ENTROPY)](action_parts, lidar, kind.endswith(ENTROPY))
 
 
 def scaled_covariance(covariance: NDArray[np.float64]) -> NDArray[np.float32]:

@@ -2,19 +2,22 @@
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any, TypedDict
 from warnings import warn
 
+from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, MapError
 from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
-from lidarena.envs.exploration.coverage import START_MARGIN
 from lidarena.envs.exploration.rewards import CERTAIN_ENOUGH, ETA, REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward
 from lidarena.slam.registry import check_slam, estimator_name
-from lidarena.world.floorplan import START_CLEARANCE, Floorplan, Pose
+from lidarena.world.floorplan import Floorplan, Pose
+from lidarena.world.lidar import LidarSpec
+from lidarena.world.lidars import make_lidar
 from lidarena.world.load import MapSpec
+from lidarena.world.robots import RobotSpec, make_robot
 
 SlamSpec = str | Callable[..., Any] | Mapping[str, Any]
 _CHOICES = {
@@ -32,11 +35,16 @@ OBSERVATIONS = (
 )
 _RENAMED_OBSERVATIONS = {"compass": "frontier_histogram"}
 _EXAMPLE = "reward = {'preset': 'combined', 'path': 2.0}"
+ROBOT = RobotSpec()
+"""DA-SLAM's TurtleBot3 Burger, at up to 0.5 m/s and 1 rad/s."""
+LIDAR = LidarSpec()
+"""Its lidar: 360 beams of 3.5 m all around, noise of 1 cm."""
+_LEAST_SIGHT, _MOST_SIGHT = 0.3, 100.0
+"""A lidar sees at least so much farther than a collision is, and no farther than the second [m]."""
+_EARLIER = {"lidar_noise": ("lidar", "noise"), "collision_distance": ("robot", "collision_distance")}
 _RANGES = {
-    "lidar_noise": (0.0, 1.0),
     "odometry_noise": (0.0, 100.0),
     "decision_period": (0.01, 2.0),
-    "collision_distance": (START_CLEARANCE, START_MARGIN),
     "eta": (1e-12, 1e6),
     "certain_enough": (1e-12, 1e6),
 }
@@ -51,10 +59,10 @@ class ExplorationKeywords(TypedDict, total=False):
     action: str
     slam: SlamSpec
     particles: int
-    lidar_noise: float
+    robot: RobotSpec | Mapping[str, Any] | str | None
+    lidar: LidarSpec | Mapping[str, Any] | str | None
     odometry_noise: float
     decision_period: float
-    collision_distance: float
     max_episode_steps: int | None
     start: Pose | str | None
     stop_at: float | None
@@ -87,11 +95,14 @@ class ExplorationOptions:
             ``"truth"`` with the true one. Or an estimator of one's own: ``"module:callable"``, a class or function (see
             ``lidarena.slam.estimator``). With options: a dictionary of them and of ``name``.
         particles: Of the particle filter.
-        lidar_noise: Standard deviation of a range [m].
+        robot: A preset of :data:`lidarena.world.robots.ROBOTS`, a mapping of changes (to a ``preset``) such as
+            ``{"radius": 0.2, "max_speed": 0.3}``, a ``RobotSpec``, or ``"module:callable"`` that makes one; here the
+            ``RobotSpec`` that it stands for. ``collision_distance`` is the range of a beam below which it is a
+            collision, 0.015 m more than the radius by default; a larger one in training teaches a margin.
+        lidar: The same with the presets of :data:`lidarena.world.lidars.LIDARS` and the ``LidarSpec`` that it stands
+            for. Whatever it sees, a bumper all around tells of collisions.
         odometry_noise: Factor on gmapping's motion noise; 0 is perfect odometry.
         decision_period: Time between decisions [s].
-        collision_distance: Range of a beam below which it is a collision [m], DA-SLAM's by default; a larger one in
-            training teaches a margin. No more than the 0.25 m that random starts keep from the walls.
         max_episode_steps: Steps after which an episode is truncated; -1 never, None the usual 1000.
         start: (x, y, theta) in the map's frame, ``"random"``, or None for the map's own.
         stop_at: Completeness that ends an episode as done; None never.
@@ -109,10 +120,10 @@ class ExplorationOptions:
     action: str = "discrete"
     slam: SlamSpec = "rbpf"
     particles: int = 30
-    lidar_noise: float = 0.01
+    robot: RobotSpec = ROBOT
+    lidar: LidarSpec = LIDAR
     odometry_noise: float = 1.0
     decision_period: float = 0.2
-    collision_distance: float = START_CLEARANCE
     max_episode_steps: int = 1000
     start: Pose | str | None = None
     stop_at: float | None = 0.995
@@ -142,7 +153,12 @@ class ExplorationOptions:
         for name, (low, high) in _RANGES.items():
             check_range(name, getattr(options, name), low, high)
         options._check_rest()
-        return options
+        robot, lidar = (
+            make_robot(given.get("robot"), ROBOT),
+            make_lidar(given.get("lidar"), LIDAR, options.decision_period),
+        )
+        check_range("lidar.max_range", lidar.max_range, robot.bumper + _LEAST_SIGHT, _MOST_SIGHT)
+        return replace(options, robot=robot, lidar=lidar)
 
     def _check_rest(self) -> None:
         check_step_limit(self.max_episode_steps)
@@ -193,7 +209,7 @@ def modern_keywords(keywords: Mapping[str, Any]) -> dict[str, Any]:
     Raises:
         ConfigError: Some are given under both.
     """
-    modern = dict(keywords)
+    modern = nest_earlier("an exploration environment", keywords, _EARLIER)
     weights = modern.pop("weights", None)
     if weights is not None:
         if modern.get("reward") != "combined" or not isinstance(weights, Mapping):

@@ -83,8 +83,8 @@ def draw_exploration(core: ExplorationCore, recorder: PathRecorder, world: int) 
 
 def _draw_scan(canvas: Canvas, core: ExplorationCore, world: int, pose: NDArray[np.float64]) -> None:
     scan = core.sensors.scans[world, 0].astype(np.float64)
-    hit = scan < core.beam.max_range
-    angles = np.arange(len(scan)) * (2 * np.pi / len(scan)) + pose[2]
+    hit = (scan < core.beam.max_range) & (scan > 0.0)
+    angles = core.beam.angles + pose[2]
     points = pose[:2] + scan[:, None] * np.stack([np.cos(angles), np.sin(angles)], axis=1)
     canvas.dots(points[hit], RED, 1.3)
 

@@ -6,14 +6,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
+from lidarena.envs.exploration.bumper import Bumper
 from lidarena.envs.exploration.floors import make_floors
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.envs.worker_threads import on_threads
 from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Sensing
 from lidarena.slam.registry import make_estimator
-from lidarena.world.lidar import LidarSpec
+from lidarena.world.lidar import first_scan
 from lidarena.world.odometry import OdometryNoise
-from lidarena.world.physics import Physics, RobotSpec, may_touch
+from lidarena.world.physics import Physics, may_touch
 from lidarena.world.sensors import empty_sensors
 
 RESOLUTION = 0.05
@@ -43,9 +44,11 @@ class ExplorationCore:
     def __init__(self, worlds: int, options: ExplorationOptions) -> None:
         self.options = options
         start = None if isinstance(options.start, str) else options.start
-        self.robot, self.beam = RobotSpec(), LidarSpec(noise=options.lidar_noise)
-        self.floors = make_floors(worlds, options.maps, start, self.beam, RESOLUTION, self.robot.radius)
+        self.robot, self.beam = options.robot, options.lidar
+        at_start = options.start != "random"
+        self.floors = make_floors(worlds, options.maps, start, self.beam, RESOLUTION, self.robot, at_start)
         self.plans, self.lidar = self.floors.plans, self.floors.lidar
+        self.bumper = Bumper(worlds, self.lidar, self.robot, options.decision_period)
         self.physics = Physics(worlds, spec=self.robot)
         self._noise = OdometryNoise().scaled(options.odometry_noise)
         self._allocate(worlds)
@@ -75,6 +78,7 @@ class ExplorationCore:
         self.physics.place(world, self.plans[plan], [pose])
         sensors = self.sensors
         sensors.dead_reckoning[world, 0] = pose
+        sensors.since_scan[world] = first_scan(self.options.decision_period, self.beam)
         sensors.path_length[world] = sensors.true_path_length[world] = 0.0
         self.estimator.start(world, plan, self.floors.coverage(plan).origin, self.physics.poses[world, 0], rng)
         self._perceive(self.physics.poses, world, world + 1)
@@ -94,7 +98,8 @@ class ExplorationCore:
         """
         before = self.physics.poses.copy()
         driven, period = commands[:, None, :], self.options.decision_period
-        may_touch(driven, period, self.robot.radius, self.sensors.ranges, self.lidar.directions, self._near)
+        around, directions = self.bumper.ranges(self.sensors), self.bumper.directions
+        may_touch(driven, period, self.robot.radius, around, directions, self._near)
         self.physics.advance(driven, period, self._near)
         self._perceive(before, 0, self.worlds)
 
@@ -102,12 +107,13 @@ class ExplorationCore:
         """Read the sensors of worlds first … last - 1 and run their SLAM."""
         sensing = Sensing(
             before, self.physics.poses, self.plan, self.streams, self._noise, self.beam,
-            self.options.collision_distance, self.lidar.geometry, self.lidar.directions, self.sensors,
+            self.robot.bumper, self.lidar.geometry, self.lidar.directions, self.sensors,
             self.options.decision_period,
         )  # fmt: skip
         estimator, counter = self.estimator, np.array([first])
         on_threads(last - first, lambda thread: estimator.sense_and_estimate(sensing, counter, last, thread))
         estimator.finish(sensing, first, last)
+        self.bumper.feel(self.physics.poses, self.plan, self.sensors, first, last)
 
     @property
     def completeness(self) -> NDArray[np.float64]:
@@ -136,3 +142,4 @@ class ExplorationCore:
         for world in range(self.worlds):
             pose = self.physics.poses[world, 0].tolist()
             self.physics.place(world, self.plans[int(self.plan[world])], [(pose[0], pose[1], pose[2])])
+        self.bumper.feel(self.physics.poses, self.plan, self.sensors, 0, self.worlds)

@@ -8,6 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration.coverage import measure_coverage
+from lidarena.envs.exploration.options import ROBOT as DA_SLAM_ROBOT
+from lidarena.envs.registration import owner_of
 from lidarena.evaluation.measures.family_measures import FamilyMeasures
 from lidarena.evaluation.measures.table_columns import COLLISION, SUCCESS, Measure
 from lidarena.evaluation.progress_curve import ProgressCurve
@@ -15,7 +17,7 @@ from lidarena.evaluation.recording import Recording
 from lidarena.evaluation.statistics import geometric_mean
 from lidarena.evaluation.trace import BelievedMap, RobotTrace, Walls
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.physics import RobotSpec
+from lidarena.world.robots import RobotSpec
 
 EXPLORED = 0.99
 """Completeness that counts as success of an exploration, however its episode ended but by a collision."""
@@ -124,10 +126,20 @@ def _believed(info: Mapping[str, Any]) -> BelievedMap | None:
 
 def _map_quality(recording: Recording) -> float:
     plan, belief = getattr(recording.env.unwrapped, "floorplan", None), _believed(recording.info)
-    return np.nan if plan is None or belief is None else map_iou(plan, belief.cells, belief.origin, belief.resolution)
+    if plan is None or belief is None:
+        return np.nan
+    owner = owner_of(recording.env, "options")
+    robot = getattr(getattr(owner, "options", None), "robot", DA_SLAM_ROBOT)
+    return map_iou(plan, belief.cells, belief.origin, belief.resolution, robot)
 
 
-def map_iou(plan: Floorplan, occupancy: NDArray[np.int8], origin: NDArray[np.float64], resolution: float) -> float:
+def map_iou(
+    plan: Floorplan,
+    occupancy: NDArray[np.int8],
+    origin: NDArray[np.float64],
+    resolution: float,
+    robot: RobotSpec = DA_SLAM_ROBOT,
+) -> float:
     """Return the intersection over union of the occupied cells, where one cell off still counts as met.
 
     Wanted are the wall cells that border what the robot can reach (``measure_coverage``): no robot can map the others.
@@ -138,12 +150,13 @@ def map_iou(plan: Floorplan, occupancy: NDArray[np.int8], origin: NDArray[np.flo
         occupancy: (rows, columns), -1 / 0 / 100, in the plan's frame.
         origin: (2,) lower-left corner of cell [0, 0] [m].
         resolution: Side of a cell [m].
+        robot: That made the map.
 
     Returns:
         Wanted cells that were met, over these, the wanted ones that were missed and the occupied ones that no wall is
         near to. NaN if nothing is wanted.
     """
-    coverage, solid = measure_coverage(plan, resolution, RobotSpec().radius), plan.raster(resolution).solid
+    coverage, solid = measure_coverage(plan, resolution, robot), plan.raster(resolution).solid
     believed = _on_grid(occupancy >= 50, origin, coverage.origin, solid.shape, resolution)
     wanted = coverage.wanted & solid
     met = int((wanted & _widened(believed)).sum())

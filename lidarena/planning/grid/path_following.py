@@ -93,6 +93,12 @@ class PathFollower:
     _kept: float = field(default=math.inf, repr=False)  # clearance that the planned commands were meant to keep
     _turning: int | None = field(default=None, repr=False)
 
+    @classmethod
+    def with_extra_room(cls, commands: Commands, extra: float) -> "PathFollower":
+        """Return one that keeps ``extra`` more of every clearance than the default ones (m)."""
+        rooms = {name: getattr(cls, name) + extra for name in ("margin", "least_margin", "last_margin", "preferred")}
+        return cls(commands, **rooms)
+
     @property
     def planned(self) -> NDArray[np.int64]:
         """The commands that are still to come, (n,) indices."""

@@ -19,7 +19,7 @@ from lidarena.slam.rbpf.likelihood_field import CELL, TILE
 from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.slam.rbpf.scan_matching import MatcherParameters
-from lidarena.slam.rbpf.scan_points import PointParameters
+from lidarena.slam.rbpf.scan_points import points_for
 from lidarena.slam.scan_outline import empty_outlines
 from lidarena.world.extent import check_extent
 from lidarena.world.map_server import OccupancyMap
@@ -190,7 +190,7 @@ class _Run:
         self.log, self.odometry, self.reach = log, odometry, settings.usable_range + _MARGIN
         self.scans = informative_ranges(log)
         step = float(abs(log.angles[1] - log.angles[0]))
-        points = PointParameters(jump_spread=settings.jump_beams * step, normal_spread=settings.normal_beams * step)
+        points = points_for(step, settings.jump_beams, settings.normal_beams)
         history = len(odometry) + 1  # nothing of the past is ever overwritten
         parameters = settings.filter._replace(particles=particles, history=history, points=points, traced=False)
         side = 2 * math.ceil((self.reach + _GROWTH) / (TILE * CELL)) * TILE

@@ -14,6 +14,7 @@ from lidarena.slam.rbpf.filter_kernel import step_filter
 from lidarena.slam.rbpf.likelihood_field import Fields, tiles_in_use
 from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
+from lidarena.slam.rbpf.scan_points import points_for
 
 MOST_PARTICLES = 1000
 """So many particles a filter can have."""
@@ -35,7 +36,10 @@ class ParticleFilterEstimator(BatchEstimator):
         check_range("particles", particles, 1, MOST_PARTICLES, whole=True)
         check_range("resample_share", resample_share, 0.0, 1.0)
         self.settings = settings
-        parameters = FilterParameters(particles=particles, resample_share=float(resample_share), noise=settings.noise)
+        parameters = FilterParameters(
+            particles=particles, resample_share=float(resample_share), noise=settings.noise,
+            points=points_for(settings.lidar.increment),
+        )  # fmt: skip
         self.filters = ParticleFilters(
             settings.worlds, settings.wanted, settings.directions, settings.lidar.max_range, settings.resolution,
             parameters,
@@ -105,7 +109,7 @@ def sense_and_filter(
         sense(w, sensing)
         step_filter(
             w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters,
-            sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.streams[w], state, maps, scratch,
-            thread,
+            sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w], sensing.streams[w],
+            state, maps, scratch, thread,
         )  # fmt: skip
         w = take_next(counter)

@@ -38,6 +38,7 @@ def step_filter(
     parameters: FilterParameters,
     reading: NDArray[np.float64],
     scan: NDArray[np.float32],
+    fresh: bool,
     stream: NDArray[np.uint64],
     state: FilterState,
     maps: OccupancyMaps,
@@ -57,6 +58,7 @@ def step_filter(
         parameters: The filters' settings.
         reading: (3,) odometry in the robot's frame before the motion.
         scan: (beams,) ranges after it [m].
+        fresh: Whether the scan was taken now; an older one is not looked at.
         stream: (4,) random stream.
         state: The filters.
         maps: The published maps.
@@ -67,7 +69,7 @@ def step_filter(
     if not due:
         predict(w, duration, reading, parameters, stream, state)
         due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
-    if due or state.since[w, 2] > parameters.temporal_update:
+    if fresh and (due or state.since[w, 2] > parameters.temporal_update):
         update(w, resolution, max_range, directions, parameters, scan, stream, s, state, maps, scratch)
     _summarise(w, state)
 

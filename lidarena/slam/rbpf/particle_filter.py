@@ -81,5 +81,5 @@ class ParticleFilters:
         """
         step_filter(
             world, duration, self.resolution, self.max_range, self.directions, self.parameters,
-            reading, scan, stream, self.state, self.maps, self.scratch, 0,
+            reading, scan, True, stream, self.state, self.maps, self.scratch, 0,
         )  # fmt: skip

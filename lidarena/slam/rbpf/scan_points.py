@@ -32,6 +32,17 @@ class PointParameters(NamedTuple):
     flatness: float = 0.08
 
 
+def points_for(increment: float, jump_beams: float = 2.9, normal_beams: float = 2.6) -> PointParameters:
+    """Settings for a lidar whose beams are so far apart; with a beam a degree nothing changes within 3.5 m.
+
+    Args:
+        increment: Angle between two beams [rad].
+        jump_beams: Hits on one surface are at most this many beam spacings apart.
+        normal_beams: A wall's normal is fitted over at least this many beam spacings to both sides.
+    """
+    return PointParameters(jump_spread=jump_beams * increment, normal_spread=normal_beams * increment)
+
+
 @leaf
 def extract_points(
     scan: NDArray[np.float32],

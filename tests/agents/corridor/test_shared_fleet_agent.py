@@ -43,5 +43,7 @@ def test_it_drives_for_one_controller_as_well(learned):
 
 
 def test_robots_that_see_something_else_are_refused(learned):
-    with pytest.raises(PolicyFileError, match=r"beams 36, but .* has beams 72; make it with beams=36"):
-        SharedFleetAgent(corridor_v0.parallel_env(beams=72, neighbours=2), learned)
+    with pytest.raises(
+        PolicyFileError, match=r"lidar.beams 36, but .* has lidar.beams 72; make it with lidar=.'beams': 36"
+    ):
+        SharedFleetAgent(corridor_v0.parallel_env(lidar={"beams": 72}, neighbours=2), learned)

@@ -135,7 +135,11 @@ def test_planners_refuse_an_unknown_world(policy: str) -> None:
 
 @pytest.mark.parametrize("policy", LIDAR)
 def test_noise_stops_no_lidar_policy(policy: str) -> None:
-    assert drive(policy, arena="random:0", density=0.08, lidar_noise=0.2)[0] in ("success", "collision", "finished")
+    assert drive(policy, arena="random:0", density=0.08, lidar={"noise": 0.2})[0] in (
+        "success",
+        "collision",
+        "finished",
+    )
 
 
 @pytest.mark.parametrize("policy", KNOWN + LIDAR)

@@ -82,6 +82,6 @@ def test_sketches_reach_the_picture_of_worlds_that_are_drawn(make: Any) -> None:
 
 
 def test_what_planners_need_to_know_of_the_robots_is_the_environments() -> None:
-    fleet = Fleet(corridor_v0.parallel_env(robots=2, radius=0.2, decision_period=0.1, goal_tolerance=0.3))
+    fleet = Fleet(corridor_v0.parallel_env(robots=2, robot={"radius": 0.2}, decision_period=0.1, goal_tolerance=0.3))
     assert (fleet.robots, fleet.radius, fleet.period, fleet.tolerance) == (2, 0.2, 0.1, 0.3)
     assert fleet.action == "continuous"

@@ -16,7 +16,7 @@ from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.world.load import load_floorplan
 from tests.envs.corridor.corridor_worlds import EXACT
 
-CHEAP: dict[str, Any] = {"beams": 4, **EXACT}
+CHEAP: dict[str, Any] = {**EXACT, "lidar": {"beams": 4, "noise": 0.0}}
 HEAD_ON: dict[str, Any] = {"robots": 2, "starts": [(5.1, 7.5), (9.1, 7.5)], "goals": [(9.1, 7.5), (5.1, 7.5)]}
 SAME_WAY: dict[str, Any] = {"robots": 2, "starts": [(5.1, 7.5), (7.1, 7.1)], "goals": [(9.1, 7.5), (11.1, 7.1)]}
 
@@ -47,7 +47,7 @@ def test_cells_cost_more_the_nearer_they_are_to_a_wall() -> None:
 
 @pytest.mark.parametrize("name", ["prioritized_astar", "coordination", "prioritized_search"])
 def test_what_is_planned_is_valid_for_discs_with_room_around_the_robots(name: str) -> None:
-    env, policy, infos = make(name, {"robots": 4, "radius": 0.18}, seed=4)
+    env, policy, infos = make(name, {"robots": 4, "robot": {"radius": 0.18}}, seed=4)
     policy.act({}, infos)
     assert policy.radius == pytest.approx(0.23) and policy.plan is not None and policy.plan.solved, policy.message
     grid = policy.fleet.grid(infos)

@@ -11,7 +11,7 @@ from lidarena.envs import corridor_v0
 from lidarena.envs.corridor.parallel_env import CorridorEnv
 from tests.envs.corridor.corridor_worlds import EXACT
 
-CHEAP: dict[str, Any] = {"beams": 4, **EXACT}
+CHEAP: dict[str, Any] = {**EXACT, "lidar": {"beams": 4, "noise": 0.0}}
 PLAN: dict[str, Any] = {"time_limit": 60.0, "iterations": 20}
 HEAD_ON: dict[str, Any] = {"robots": 2, "starts": [(5.1, 7.5), (9.1, 7.5)], "goals": [(9.1, 7.5), (5.1, 7.5)]}
 IN_THE_WAY: dict[str, Any] = {"robots": 2, "starts": [(5.1, 7.5), (7.1, 7.5)], "goals": [(9.1, 7.5), (12.1, 7.5)]}

@@ -6,6 +6,7 @@ import pytest
 
 from lidarena.base.errors import ConfigError
 from lidarena.baselines.exploration.robot_interface import Robot
+from lidarena.envs.exploration.options import ExplorationOptions
 
 
 class Env:
@@ -40,11 +41,10 @@ def test_continuous_actions_stand_for_the_velocities():
 
 
 def test_period_is_the_environments():
-    spec = gym.envs.registration.EnvSpec("lidarena/Env1-v0", kwargs={"decision_period": 0.1})
+    quick = Env(DISCRETE, options=ExplorationOptions.checked({"decision_period": 0.1}))
     assert Robot(Env(DISCRETE)).period == 0.2
-    assert Robot(Env(DISCRETE, spec=spec)).period == 0.1
-    assert Robot(Env(DISCRETE, decision_period=0.5)).period == 0.5
-    np.testing.assert_allclose(Robot(Env(DISCRETE, spec=spec)).commands.moves[0], [0.05, 0.0, 0.0])
+    assert Robot(quick).period == 0.1
+    np.testing.assert_allclose(Robot(quick).commands.moves[0], [0.05, 0.0, 0.0])
 
 
 @pytest.mark.parametrize(
@@ -84,9 +84,9 @@ def test_scans_are_understood_as_well():
 
 def test_hits_are_where_the_beams_end() -> None:
     observation = np.array([0.1, 1.0, 0.05, 0.5, 0.0, 0.0, 0.0], np.float32)  # over 3.5 m; the last two are no beams
-    hits = Robot.hits(observation, np.array([1.0, 2.0, math.pi / 2]), reach=0.6)
+    hits = Robot(Env(DISCRETE)).hits(observation, np.array([1.0, 2.0, math.pi / 2]), reach=0.6)
     assert hits == pytest.approx(np.array([[1.0, 2.35], [1.0 - 0.175, 2.0]]), abs=1e-6)
-    scan = {"scan": np.full(4, 0.1)}
-    assert Robot.hits(scan, np.zeros(3), reach=0.6) == pytest.approx(
+    scan, options = {"scan": np.full(4, 0.1)}, ExplorationOptions.checked({"lidar": {"beams": 4}})
+    assert Robot(Env(DISCRETE, options=options)).hits(scan, np.zeros(3), reach=0.6) == pytest.approx(
         np.array([[0.35, 0.0], [0.0, 0.35], [-0.35, 0.0], [0.0, -0.35]]), abs=1e-9
     )

@@ -16,11 +16,11 @@ from tests.planning.potential_field.test_potential_field import BARN, needs_barn
 SPECS: list[dict[str, Any]] = [
     {"arena": "yang"},
     {"arena": "yang:arc"},
-    {"arena": "yang:u", "action": "discrete", "lidar_noise": 0.05},
+    {"arena": "yang:u", "action": "discrete", "lidar": {"noise": 0.05}},
     {"arena": "gnron", "knowledge": "lidar"},
     {"arena": "u_trap:3", "render_mode": "rgb_array"},
     {"arena": "u_trap"},
-    {"arena": "random:5", "density": 0.22, "beams": 12},
+    {"arena": "random:5", "density": 0.22, "lidar": {"beams": 12}},
     {"arena": "random", "density": [0.0, 0.2], "expose_truth": True},
     {"arena": "env2", "goal": (1.0, 6.5)},
     {"arena": "maze:3", "goal": (1.0, 1.0), "start": (2.0, 2.0)},
@@ -85,7 +85,7 @@ def test_sizes_are_to_scale() -> None:
     small, large = ArenaEnv(arena="gnron"), ArenaEnv(arena="yang")
     assert large.step_length == pytest.approx(10 * small.step_length) == 1.0
     assert ArenaEnv(arena="env2", goal=(1.0, 6.5)).step_length == pytest.approx(0.1)
-    assert ArenaEnv(arena="yang", speed=2.0, decision_period=0.25).step_length == 0.5
+    assert ArenaEnv(arena="yang", robot={"max_speed": 2.0}, decision_period=0.25).step_length == 0.5
 
 
 def test_the_straight_way_through_an_empty_room_reaches_the_goal() -> None:
@@ -273,12 +273,12 @@ def test_bad_discrete_actions_are_refused(action: object) -> None:
         ({"pick": "byseed"}, "did you mean 'by_seed'"),
         ({"action": "heading"}, "action = 'heading'"),
         ({"knowledge": "all"}, "knowledge"),
-        ({"beams": 2}, "beams = 2"),
-        ({"beams": 36.5}, "whole number"),
-        ({"speed": 0}, "speed = 0"),
-        ({"speed": float("nan")}, "speed = nan"),
+        ({"lidar": {"beams": 2}}, "lidar.beams = 2"),
+        ({"lidar": {"beams": 36.5}}, "whole number"),
+        ({"robot": {"max_speed": 0}}, "robot.max_speed = 0"),
+        ({"robot": {"max_speed": float("nan")}}, "robot.max_speed = nan"),
         ({"goal_radius": -1.0}, "goal_radius"),
-        ({"max_range": 0.0}, "max_range"),
+        ({"lidar": {"max_range": 0.0}}, "max_range"),
         ({"reward": {"progress": -1.0}}, "reward.progress"),
         ({"max_episode_steps": 0}, "max_episode_steps"),
         ({"density": 0.5}, "density = 0.5"),

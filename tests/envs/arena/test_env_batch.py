@@ -15,7 +15,7 @@ from tests.envs.exploration.test_env_batch import raw, world_of
 STEPS = 120
 KEYWORDS: list[dict[str, Any]] = [
     {"arena": "random", "density": 0.22, "arenas": 9},
-    {"arena": ["yang:u", "random:3", "u_trap"], "action": "discrete", "lidar_noise": 0.1},
+    {"arena": ["yang:u", "random:3", "u_trap"], "action": "discrete", "lidar": {"noise": 0.1}},
     {
         "arena": "random",
         "expose_truth": True,

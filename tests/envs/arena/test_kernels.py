@@ -8,7 +8,7 @@ import pytest
 from lidarena.envs.arena.kernels import turn_and_sweep, way_gap
 from lidarena.envs.arena.options import ArenaOptions
 from lidarena.envs.arena.state import ArenaCore
-from lidarena.world.lidar import Lidar, LidarSpec
+from lidarena.world.lidar import Lidar
 
 SPECS = ["random", "u_trap", "yang:u", "env2", "gnron"]
 
@@ -53,7 +53,7 @@ def test_the_lidar_sees_what_the_ordinary_one_sees(spec: str) -> None:
     for world in range(core.worlds):
         scenario = core.scenarios[world]
         assert scenario is not None
-        lidar = Lidar([scenario.plan], LidarSpec(36, core.max_range, 0.0))
+        lidar = Lidar([scenario.plan], core.beam)
         ranges = lidar.cast(core.physics.poses[world : world + 1], np.zeros(1, np.int64))
         assert core.measurements.ranges[world] == pytest.approx(ranges[0], abs=1e-12)
 
@@ -70,7 +70,7 @@ def test_turning_wraps_the_heading_and_tells_who_is_near() -> None:
 
 
 def test_noise_is_added_within_the_range() -> None:
-    exact, noisy = core_of("random", 1), core_of("random", 1, lidar_noise=0.3)
+    exact, noisy = core_of("random", 1), core_of("random", 1, lidar={"noise": 0.3})
     assert np.array_equal(exact.measurements.ranges, noisy.measurements.ranges)
     off = noisy.measurements.scans - noisy.measurements.ranges
     hit = noisy.measurements.ranges < 30.0

@@ -6,14 +6,19 @@ import numpy as np
 import pytest
 
 from lidarena.base.errors import ConfigError
-from lidarena.envs.arena.options import ArenaOptions
+from lidarena.envs.arena.options import LIDAR, ROBOT, ArenaOptions
 from lidarena.world.arenas import load_arena
 
 
 def test_the_defaults_pass() -> None:
     options = ArenaOptions.checked({})
     assert options.specs == ["random"] and options.densities == [0.15]
-    assert options.beams == 36 and options.knowledge == "map" and options.action == "continuous"
+    assert (
+        options.lidar == LIDAR
+        and options.robot == ROBOT
+        and options.knowledge == "map"
+        and options.action == "continuous"
+    )
 
 
 def test_every_keyword_is_documented() -> None:
@@ -36,7 +41,7 @@ def test_absurd_weights_are_refused(name: str, value: object) -> None:
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf"), 0.0, -2.0, "far", True])
-@pytest.mark.parametrize("name", ["max_range", "decision_period", "goal_radius", "speed"])
+@pytest.mark.parametrize("name", ["decision_period", "goal_radius"])
 def test_absurd_lengths_and_times_are_refused(name: str, value: object) -> None:
     with pytest.raises(ConfigError, match=f"{name} = .* is out of range"):
         ArenaOptions.checked({name: value})

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorOptions
 
-EXACT: dict[str, Any] = {"motion_noise": 0.0, "localization_noise": 0.0, "lidar_noise": 0.0}
+EXACT: dict[str, Any] = {"motion_noise": 0.0, "localization_noise": 0.0, "lidar": {"noise": 0.0}}
 """Wheels obey, and what robots know is true."""
 
 

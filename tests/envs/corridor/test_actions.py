@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lidarena.base.errors import ActionError
-from lidarena.envs.corridor.actions import COMMANDS, NAMES, action_for, action_space, commands_of
+from lidarena.envs.corridor.actions import NAMES, action_for, action_space, commands_of, discrete_commands
 
 SPEEDS, RATES = st.floats(-1.5, 1.5), st.floats(-6.0, 6.0)
 
@@ -28,7 +28,7 @@ def test_a_command_that_is_too_fast_becomes_slower_on_the_same_arc(speed: float,
 @given(SPEEDS, RATES)
 def test_no_other_discrete_action_is_nearer_to_a_command(speed: float, rate: float) -> None:
     chosen = action_for("discrete", speed, rate)
-    away = [math.hypot((v - speed) / 0.5, (w - rate) / 2.0) for v, w in COMMANDS.tolist()]
+    away = [math.hypot((v - speed) / 0.5, (w - rate) / 2.0) for v, w in discrete_commands().tolist()]
     assert away[chosen] == min(away)
 
 

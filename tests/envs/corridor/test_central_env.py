@@ -12,7 +12,14 @@ from lidarena.envs.corridor import SHARED_ID
 from lidarena.envs.corridor.shared_env import SharedCorridor
 
 STEPS = 50
-CROWD = {"places": "random", "robots": 3, "max_episode_steps": 30, "radius": 0.3, "stall_rate": 0.05, "neighbours": 1}
+CROWD = {
+    "places": "random",
+    "robots": 3,
+    "max_episode_steps": 30,
+    "robot": {"radius": 0.3},
+    "stall_rate": 0.05,
+    "neighbours": 1,
+}
 
 
 def actions_for(seed):

@@ -21,7 +21,7 @@ def step(episodes: CorridorEpisodes, speed: float = 1.0, turn: float = 0.0) -> t
 
 
 def test_the_terms_add_up_to_the_reward_and_are_what_they_say() -> None:
-    episodes = begin(2, robots=6, map="unstructured", places="random", radius=0.2, reward=WEIGHTS)
+    episodes = begin(2, robots=6, map="unstructured", places="random", robot={"radius": 0.2}, reward=WEIGHTS)
     core, rng = episodes.core, np.random.default_rng(3)
     earned = dict.fromkeys(REWARDS.names, 0.0)
     for _ in range(60):
@@ -144,7 +144,7 @@ def test_a_new_episode_remembers_nothing_of_the_old_one() -> None:
 
 
 def test_an_observation_has_no_number_beyond_one() -> None:
-    episodes = begin(3, robots=6, map="unstructured", neighbours=3, motion_noise=10.0, lidar_noise=1.0)
+    episodes = begin(3, robots=6, map="unstructured", neighbours=3, motion_noise=10.0, lidar={"noise": 1.0})
     for _ in range(15):
         step(episodes, 1.0, 0.4)
         seen = episodes.observe(hide_finished=False)

@@ -173,7 +173,7 @@ def test_whoever_is_not_near_anything_touches_nothing_on_the_way() -> None:
     core = begin(map="unstructured", robots=1).core
     plan, (poses, commands) = core.plan, scattered(120, 6)
     near = np.zeros(poses.shape[:2], np.bool_)
-    find_near(commands, PERIOD, 0.105, poses, core.ground, near)
+    find_near(commands, PERIOD, 0.105, False, poses, core.ground, near)
     half_turn = poses[..., 2] + 0.5 * PERIOD * commands[..., 1]
     bend = np.sinc(0.5 * PERIOD * commands[..., 1] / np.pi)
     reach = (PERIOD * commands[..., 0] * bend)[..., None] * np.stack([np.cos(half_turn), np.sin(half_turn)], axis=-1)
@@ -189,7 +189,7 @@ def test_whoever_a_pushed_robot_could_reach_is_near_too() -> None:
     core = begin(map="unstructured", robots=1).core
     poses, commands = scattered(120, 6)
     near = np.zeros(poses.shape[:2], np.bool_)
-    find_near(commands, PERIOD, 0.105, poses, core.ground, near)
+    find_near(commands, PERIOD, 0.105, False, poses, core.ground, near)
     fastest = np.abs(commands[..., 0]).max(axis=1)
     reach = 2.0 * (0.105 + PERIOD * fastest) + 0.02
     close = gaps(poses) < reach[:, None, None] - 1e-9
@@ -201,5 +201,5 @@ def test_robots_in_the_open_and_robots_at_rest_are_near_nothing() -> None:
     poses = np.array([[(5.0, 7.5, 0.0), (6.0, 7.5, 0.0), (10.0, 6.5, 0.0), (10.211, 6.5, 0.0)]])
     commands = np.array([[(0.5, 0.0), (0.5, 0.0), (0.0, 1.0), (0.0, 0.0)]])
     near = np.ones((1, 4), np.bool_)
-    find_near(commands, PERIOD, 0.105, poses, core.ground, near)
+    find_near(commands, PERIOD, 0.105, False, poses, core.ground, near)
     assert not near.any()

@@ -17,7 +17,7 @@ def observed(poses: Floats, speeds: Floats, neighbours: int) -> Floats:
     measurements = TeamMeasurements(
         np.ones((1, robots, 4)), np.ones((1, robots, 4), np.float32), poses[None],
         np.stack([speeds, 0 * speeds], axis=1)[None], np.ones((1, robots)), np.ones((1, robots, 2)),
-        np.zeros((1, robots)),
+        np.zeros((1, robots)), np.zeros(1),
     )  # fmt: skip
     out = np.full((1, robots, 4 + 8 + 5 * neighbours), np.nan, np.float32)
     nobody = np.zeros((1, robots), np.bool_)

@@ -96,7 +96,7 @@ def test_rewards_follow_their_weights():
 
 
 def test_robots_see_each_other_and_their_goals():
-    env = make(lidar_noise=0.0, localization_noise=0.0, neighbours=1, **HEAD_ON)
+    env = make(lidar={"noise": 0.0}, localization_noise=0.0, neighbours=1, **HEAD_ON)
     observations, infos = env.reset(seed=0)
     row = observations["robot_0"]
     assert row[0] * 3.5 == pytest.approx(1.5 - 0.105, abs=1e-3)
@@ -166,12 +166,12 @@ def test_a_movingai_scenario_says_who_goes_where(tmp_path):
 @pytest.mark.parametrize(
     ("keywords", "error", "sentence"),
     [
-        ({"robot": 4}, ConfigError, "did you mean 'robots'"),
+        ({"robotts": 4}, ConfigError, "did you mean 'robots'"),
         ({"robots": 0}, ConfigError, "robots = 0 is out of range"),
         ({"robots": 65}, ConfigError, "from 1 to 64"),
         ({"action": "discret"}, ConfigError, "did you mean 'discrete'"),
         ({"render_mode": "ascii"}, ConfigError, "render_mode = 'ascii' is not known"),
-        ({"radius": float("nan")}, ConfigError, "radius = nan"),
+        ({"robot": {"radius": float("nan")}}, ConfigError, "radius = nan"),
         ({"collision_ends": 1}, ConfigError, "must be true or false"),
         ({"map": 3}, ConfigError, "map = 3 must be"),
         ({"map": "offise"}, MapError, "did you mean 'office'"),
@@ -182,12 +182,12 @@ def test_a_movingai_scenario_says_who_goes_where(tmp_path):
         ({"map": "env1", "places": "predefined"}, ConfigError, "no predefined places"),
         ({"robots": 30}, ConfigError, "has starts for 24; at most 24 robots"),
         ({"map": "passing"}, ConfigError, "robots = 4, but map 'passing' has starts for 2"),
-        ({"radius": 0.6}, TeamError, "does not fit at the place"),
+        ({"robot": {"radius": 0.6}}, TeamError, "does not fit at the place"),
         (HEAD_ON | {"goals": [(1.0, 1.0)]}, ConfigError, "must be 2 points"),
         (HEAD_ON | {"goals": [(5.0, 8.7), (2.0, 7.5)]}, TeamError, "goal .* of robot 0"),
         (HEAD_ON | {"goals": [(8.0, 7.5), (8.0, 7.5)]}, TeamError, "share the goal"),
         (HEAD_ON | {"starts": [(5.0, 7.5), (5.1, 7.5)]}, TeamError, r"overlap: they are 0\.10 m apart"),
-        (HEAD_ON | {"radius": 0.55, "goals": [(8.0, 7.5), (2.0, 12.0)]}, TeamError, "wider than every door"),
+        (HEAD_ON | {"robot": {"radius": 0.55}, "goals": [(8.0, 7.5), (2.0, 12.0)]}, TeamError, "wider than every door"),
     ],
 )
 def test_what_cannot_be_is_refused_with_one_sentence(keywords, error, sentence):

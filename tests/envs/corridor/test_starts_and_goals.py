@@ -32,7 +32,7 @@ def draw(made: StartGoalSampler, seed: int) -> tuple[Floats, Floats]:
     [("office", 6, 0.105), ("unstructured", 10, 0.25), ("passing", 2, 0.105), ("blocked", 8, 0.105), ("env1", 3, 0.15)],
 )
 def test_random_places_are_apart_off_the_walls_and_solvable(name: str, robots: int, radius: float) -> None:
-    made, plan = places(map=name, robots=robots, radius=radius, places="random"), load_floorplan(name)
+    made, plan = places(map=name, robots=robots, robot={"radius": radius}, places="random"), load_floorplan(name)
     for seed in range(2):
         starts, goals = draw(made, seed)
         assert starts.shape == goals.shape == (robots, 2)
@@ -119,7 +119,7 @@ def test_a_scenarios_places_are_in_metres_of_its_map(tmp_path: Path) -> None:
         ({"starts": [(5, 7.5), (5, math.nan)], "goals": [(9, 7.5), (8, 7.5)]}, ConfigError, "must be 2 points"),
         ({"starts": [(5, 7)] * 2, "goals": [(9, 7)] * 2, "places": "random"}, ConfigError, "in place of places"),
         ({"map": "blocked", "robots": 7}, ConfigError, "has starts for 6; at most 6 robots"),
-        ({"map": "unstructured", "radius": 0.5}, TeamError, "radius 0.5 m does not fit at the place"),
+        ({"map": "unstructured", "robot": {"radius": 0.5}}, TeamError, "radius 0.5 m does not fit at the place"),
         ({"places": "randon"}, ConfigError, "did you mean 'random'"),
     ],
 )
@@ -132,8 +132,8 @@ def test_places_that_no_team_can_have_are_refused(keywords: dict[str, object], e
 def test_a_team_for_which_no_problem_can_be_solved_is_refused_in_the_end(tmp_path: Path) -> None:
     """In a corridor that is one robot wide two robots can change places nowhere; only some draws need no passing."""
     (tmp_path / "tube.map").write_text("type octile\nheight 1\nwidth 3\nmap\n...\n")
-    made = places(map=str(tmp_path / "tube.map"), robots=2, places="random", radius=0.4)
+    made = places(map=str(tmp_path / "tube.map"), robots=2, places="random", robot={"radius": 0.4})
     starts, goals = draw(made, 0)
     assert (starts[0, 0] < starts[1, 0]) == (goals[0, 0] < goals[1, 0])
     with pytest.raises(TeamError, match="4 robots"):
-        draw(places(map=str(tmp_path / "tube.map"), robots=4, places="random", radius=0.4), 0)
+        draw(places(map=str(tmp_path / "tube.map"), robots=4, places="random", robot={"radius": 0.4}), 0)

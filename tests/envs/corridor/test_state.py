@@ -10,6 +10,7 @@ from lidarena.envs.corridor.episodes import CorridorEpisodes
 from tests.envs.corridor.corridor_worlds import EXACT, begin, gaps
 
 Floats = NDArray[np.float64]
+EXACT_24 = EXACT | {"lidar": {"noise": 0.0, "beams": 24}}
 TOLERANCE = 0.04
 """Bodies may overlap so little for a moment, until the physics has pushed them apart [m]."""
 
@@ -28,7 +29,9 @@ def restless(episodes: CorridorEpisodes, steps: int, seed: int = 0, least_speed:
 
 @pytest.mark.parametrize("name", ["office", "unstructured"])
 def test_robots_overlap_neither_each_other_nor_walls_nor_pass_through_them(name: str) -> None:
-    episodes = begin(2, map=name, robots=8, places="random", radius=0.2, collision_ends=False, max_episode_steps=None)
+    episodes = begin(
+        2, map=name, robots=8, places="random", robot={"radius": 0.2}, collision_ends=False, max_episode_steps=None
+    )
     seen = np.stack(restless(episodes, 80))
     assert gaps(seen).min() > 0.4 - TOLERANCE
     for share in (0.25, 0.5, 0.75, 1.0):
@@ -69,7 +72,7 @@ def test_wheels_that_obey_drive_arcs(speed: float, turn: float) -> None:
 
 @pytest.mark.parametrize("name", ["office", "unstructured"])
 def test_a_ray_passes_neither_a_wall_nor_a_robot_and_ends_at_one(name: str) -> None:
-    episodes = begin(2, map=name, robots=8, places="random", radius=0.2, beams=24, collision_ends=False, **EXACT)
+    episodes = begin(2, map=name, robots=8, places="random", robot={"radius": 0.2}, collision_ends=False, **EXACT_24)
     restless(episodes, 25)
     core = episodes.core
     met_robots = 0
@@ -94,13 +97,13 @@ def test_a_ray_passes_neither_a_wall_nor_a_robot_and_ends_at_one(name: str) -> N
 @pytest.mark.parametrize("gap", [0.02, 0.1, 0.2, 0.4, 1.0])
 def test_closeness_falls_from_one_at_a_touch_to_nothing_at_two_radii(gap: float) -> None:
     episodes = begin(
-        robots=2, starts=[(5.0, 7.5), (5.2 + gap, 7.5)], goals=[(1.0, 7.5), (9.0, 7.5)], radius=0.1, **EXACT
+        robots=2, starts=[(5.0, 7.5), (5.2 + gap, 7.5)], goals=[(1.0, 7.5), (9.0, 7.5)], robot={"radius": 0.1}, **EXACT
     )
     assert episodes.core.measurements.closeness[0] == pytest.approx(2 * [max(1.0 - gap / 0.2, 0.0)], abs=1e-9)
 
 
 def test_scans_and_poses_scatter_around_the_truth() -> None:
-    episodes = begin(20, robots=6, places="random", lidar_noise=0.05, localization_noise=0.03)
+    episodes = begin(20, robots=6, places="random", lidar={"noise": 0.05}, localization_noise=0.03)
     core = episodes.core
     seen = core.measurements.ranges < 3.3  # no range is measured beyond the lidar's reach
     error = (core.measurements.scans - core.measurements.ranges)[seen & (core.measurements.ranges > 0.3)]
@@ -123,7 +126,7 @@ def test_robots_begin_at_rest_on_their_starts_facing_along_their_way() -> None:
 @pytest.mark.parametrize("start", [(0.9, 0.6), (0.9, 0.7)])
 def test_a_way_that_is_just_wide_enough_is_a_way(start: tuple[float, float]) -> None:
     """In a corridor of 0.8 m a robot of 0.29 m has no 3 cm to spare in any cell; its way is no less a way."""
-    episodes = begin(map="passing", robots=1, radius=0.29, starts=[start], goals=[(3.5, 0.6)], **EXACT)
+    episodes = begin(map="passing", robots=1, robot={"radius": 0.29}, starts=[start], goals=[(3.5, 0.6)], **EXACT)
     remaining = first = float(episodes.core.measurements.remaining[0, 0])
     assert 2.6 <= remaining < 2.5 * 2.6 + 1.0
     for _ in range(20):

@@ -4,9 +4,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.base.errors import ActionError
-from lidarena.envs.exploration.actions import COMMANDS, TOP_SPEED, TOP_TURN_RATE, action_space, commands_of
-from lidarena.world.physics import RobotSpec
+from lidarena.envs.exploration.actions import action_space, commands_of, discrete_commands
+from lidarena.world.robots import RobotSpec
 
+COMMANDS = discrete_commands(RobotSpec())
 PART = st.floats(-1.0, 1.0)
 
 
@@ -33,7 +34,7 @@ def test_the_three_actions_are_forward_left_and_right() -> None:
 def test_continuous_actions_are_scaled_linearly(actions: list[tuple[float, float]]) -> None:
     commands = commands_of("continuous", np.array(actions), len(actions))
     for (speed, rate), (v, w) in zip(actions, commands, strict=True):
-        assert v == pytest.approx(TOP_SPEED * (speed + 1) / 2) and w == pytest.approx(TOP_TURN_RATE * rate)
+        assert v == pytest.approx(0.5 * (speed + 1) / 2) and w == pytest.approx(rate)
 
 
 def test_the_ends_of_the_range_stand_still_and_go_full_speed() -> None:
@@ -81,4 +82,4 @@ def test_what_is_no_action_is_refused_in_one_sentence(kind: str, actions: object
 def test_commands_are_fresh_arrays() -> None:
     commands = commands_of("discrete", np.array([0, 0]), 2)
     commands[:] = 9.0
-    assert COMMANDS[0].tolist() == [0.5, 0.0]
+    assert commands_of("discrete", np.array([0]), 1).tolist() == [[0.5, 0.0]]

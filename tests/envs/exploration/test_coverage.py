@@ -4,6 +4,7 @@ import pytest
 from lidarena.envs.exploration.coverage import measure_coverage
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
+from lidarena.world.robots import RobotSpec
 
 BOX = [(0, 0, 4, 0), (4, 0, 4, 3), (4, 3, 0, 3), (0, 3, 0, 0)]
 
@@ -13,14 +14,14 @@ def box(**keywords: object) -> Floorplan:
 
 
 def test_a_room_is_covered_by_its_floor_and_the_walls_faces() -> None:
-    wanted = measure_coverage(box(), 0.05, 0.105).wanted
+    wanted = measure_coverage(box(), 0.05, RobotSpec()).wanted
     floor, faces = (3.9 / 0.05) * (2.9 / 0.05), 2 * (3.9 + 2.9) / 0.05
     assert wanted.sum() == pytest.approx(floor + faces, rel=0.02)
 
 
 def test_a_room_without_a_door_is_not_wanted() -> None:
     closed = box(polygons=[[(2, 0), (2, 3), (2.1, 3), (2.1, 0)]])
-    coverage = measure_coverage(closed, 0.05, 0.105)
+    coverage = measure_coverage(closed, 0.05, RobotSpec())
     columns = np.flatnonzero(coverage.wanted.any(axis=0))
     assert coverage.origin[0] + columns.max() * 0.05 < 2.1
     assert (coverage.starts[:, 0] < 2.0).all()
@@ -28,7 +29,10 @@ def test_a_room_without_a_door_is_not_wanted() -> None:
 
 def test_a_slit_too_narrow_for_the_robot_is_not_wanted() -> None:
     slit = box(polygons=[[(2, 0), (2, 1.4), (2.1, 1.4), (2.1, 0)], [(2, 1.6), (2, 3), (2.1, 3), (2.1, 1.6)]])
-    assert measure_coverage(slit, 0.05, 0.105).wanted.sum() < 0.6 * measure_coverage(box(), 0.05, 0.105).wanted.sum()
+    assert (
+        measure_coverage(slit, 0.05, RobotSpec()).wanted.sum()
+        < 0.6 * measure_coverage(box(), 0.05, RobotSpec()).wanted.sum()
+    )
 
 
 @pytest.mark.parametrize("name", ["env1", "env2", "env3", "env4", "willow_lobby"])
@@ -39,7 +43,7 @@ def test_perfect_mapping_can_know_all_of_it(name: str) -> None:
     from lidarena.world.lidar import Lidar
 
     plan = load_floorplan(name)
-    coverage = measure_coverage(plan, 0.05, 0.105)
+    coverage = measure_coverage(plan, 0.05, RobotSpec())
     lidar, maps = Lidar([plan]), empty_maps(1, coverage.wanted[None].astype(np.uint8))
     maps.origin[0] = coverage.origin
     outlines = empty_outlines(1, len(coverage.wanted), 360, 3.5, 0.05)

@@ -120,7 +120,7 @@ def test_a_sector_holds_the_nearest_of_its_beams() -> None:
 
 
 def test_the_observation_holds_beams_previous_action_and_completeness() -> None:
-    env = gym.make("lidarena/Env1-v0", lidar_noise=0.0)
+    env = gym.make("lidarena/Env1-v0", lidar={"noise": 0.0})
     observation, info = env.reset(seed=3)
     assert observation[5] == 0.0
     observation, _, _, _, info = env.step(2)
@@ -131,7 +131,7 @@ def test_the_observation_holds_beams_previous_action_and_completeness() -> None:
 
 
 def test_the_picture_of_the_map_is_egocentric_and_heading_up() -> None:
-    env = gym.make("lidarena/Env3-v0", observation="map", slam="truth", lidar_noise=0.0)
+    env = gym.make("lidarena/Env3-v0", observation="map", slam="truth", lidar={"noise": 0.0})
     observation, _ = env.reset(seed=0)
     picture = observation["map"]
     assert picture.shape == (3, 64, 64)
@@ -196,7 +196,7 @@ def test_stepping_before_reset_is_refused(make: type) -> None:
         ({"particles": 0}, "particles = 0"),
         ({"particles": 2.5}, "whole number"),
         ({"decision_period": float("nan")}, "decision_period"),
-        ({"lidar_noise": -1}, "lidar_noise"),
+        ({"lidar": {"noise": -1}}, "lidar.noise = -1"),
         ({"stop_at": 2}, "stop_at"),
         ({"max_episode_steps": 0}, "max_episode_steps"),
         ({"slam": "gmapping"}, "slam"),

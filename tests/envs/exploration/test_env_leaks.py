@@ -28,7 +28,18 @@ def sense_then_filter(core: ExplorationCore, shift: tuple[float, float, float]) 
         assert isinstance(core.estimator, ParticleFilterEstimator)
         sensors, filters = core.sensors, core.estimator.filters
         lidar = (START_CLEARANCE, core.lidar.geometry, core.lidar.directions)
-        read_sensors(0, before, core.physics.poses, core.plan, core._noise, core.beam, *lidar, core.streams, sensors)
+        read_sensors(
+            0,
+            core.options.decision_period,
+            before,
+            core.physics.poses,
+            core.plan,
+            core._noise,
+            core.beam,
+            *lidar,
+            core.streams,
+            sensors,
+        )
         core.physics.poses += shift
         filters.step(0, core.options.decision_period, sensors.readings[0, 0], sensors.scans[0, 0], core.streams[0])
 

@@ -92,7 +92,7 @@ def test_coverage_physics_and_pictures_follow_the_plan() -> None:
         env.reset(seed=seed)
         plan, core = env.floorplan, env.episodes.core
         sizes.add(plan.bounds)
-        assert core.floors.wanted_cells[0] == measure_coverage(plan, 0.05, core.robot.radius).wanted.sum()
+        assert core.floors.wanted_cells[0] == measure_coverage(plan, 0.05, core.robot).wanted.sum()
         assert core.maps.wanted is core.floors.wanted
         terminated = truncated = False
         while not (terminated or truncated):
@@ -126,9 +126,9 @@ def crowded(rng: np.random.Generator) -> Floorplan:
 
 
 def test_no_room_for_the_robot_is_refused() -> None:
-    with pytest.raises(MapError, match="'crowded' has no room for a robot of radius"):
+    with pytest.raises(MapError, match="does not fit at the start .* of map 'crowded'"):
         ExplorationEnv(map=crowded).reset(seed=0)
-    with pytest.raises(MapError, match="'crowded' has no room for a robot of radius"):
+    with pytest.raises(MapError, match="does not fit at the start .* of map 'crowded'"):
         ExplorationEnv(map=crowded(np.random.default_rng(0)))
 
 

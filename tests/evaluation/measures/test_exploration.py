@@ -6,11 +6,12 @@ import pytest
 from lidarena.envs.exploration.coverage import measure_coverage
 from lidarena.evaluation.measures.exploration import map_iou
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.robots import RobotSpec
 
 ROOM = Floorplan.from_shapes(
     "room", (0, 0, 4, 3), walls=[(0, 0, 4, 0), (4, 0, 4, 3), (4, 3, 0, 3), (0, 3, 0, 0)], start=(1.0, 1.0, 0.0)
 )
-COVERAGE = measure_coverage(ROOM, 0.05, 0.105)
+COVERAGE = measure_coverage(ROOM, 0.05, RobotSpec())
 
 
 def perfect() -> np.ndarray:
