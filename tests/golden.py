@@ -132,7 +132,8 @@ def _plans() -> str:
         free = np.argwhere(~grid)
         places = free[rng.choice(len(free), 10, replace=False)]
         for method in ("independent_astar", "prioritized_astar", "coordination", "prioritized_search"):
-            plan = plan_team(grid, starts=places[:5], goals=places[5:], radius=0.3, method=method, seed=number)
+            ends = {"starts": places[:5], "goals": places[5:]}
+            plan = plan_team(grid, **ends, radius=0.3, method=method, seed=number, time_limit=60.0)
             digest.add(float(plan.cost) if plan.solved else -1.0)
             digest.add(np.concatenate([np.asarray(path, np.float64) for path in plan.paths]) if plan.solved else 0.0)
     return digest.text()

@@ -20,6 +20,7 @@ from lidarena.planning.team.constraints import Constraint, forbid, permit, split
 from lidarena.planning.team.grid_graph import STEP
 from lidarena.planning.team.prioritized import conflicts_of
 from lidarena.planning.team.route import GAVE_UP, find_route
+from lidarena.planning.team.search_arrays import PlaceCosts
 from lidarena.planning.team.traffic import NO_BOUND, Traffic
 
 _LOOKED_AT = 4  # conflicts of a node whose children are compared
@@ -146,33 +147,26 @@ class ConflictBasedSearch:
             )  # the robot's old path is a bound for the one that is not looked for
             return False
         layer = self._layer[: last + 1]
-        presence = (graph.padded, graph.at, graph.begins, graph.entries)
-        tables = (traffic.table, traffic.until, traffic.since)
         for other in others:
             if other != robot and self._weight:
-                _add_presence(node.paths[other], node.lengths[other], *presence, self._weight, layer)
+                _add_presence(node.paths[other], node.lengths[other], *graph.arrays[1:], self._weight, layer)
         for c in mine:
-            forbid(c.moves, np.int64(c.time), c.forever, *tables)
-        traffic.limits[:2] = NO_BOUND
+            forbid(c.moves, np.int64(c.time), c.forever, traffic.reserved)
+        traffic.memory.limits[:2] = NO_BOUND
         steps = find_route(
             graph.neighbours,
-            traffic.ahead[robot],
-            self._base,
-            layer,
-            *tables,
+            PlaceCosts(traffic.ahead[robot], self._base, layer),
+            traffic.reserved,
             np.int64(last),
             traffic.ends[robot],
-            traffic.limits,
-            traffic.nodes,
-            traffic.keys,
-            traffic.items,
+            traffic.memory,
             node.paths[robot],
         )
         for c in mine:
-            permit(c.moves, np.int64(c.time), c.forever, *tables)
+            permit(c.moves, np.int64(c.time), c.forever, traffic.reserved)
         for other in others:
             if other != robot and self._weight:
-                _add_presence(node.paths[other], node.lengths[other], *presence, -self._weight, layer)
+                _add_presence(node.paths[other], node.lengths[other], *graph.arrays[1:], -self._weight, layer)
         if steps == GAVE_UP:
             self._lost = min(self._lost, node.cost)
         node.lengths[robot] = max(steps, 0)

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import leaf
 from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import CLOSE, MOVES, nearest_approach
+from lidarena.planning.team.search_arrays import Reservations
 
 
 class Constraint(NamedTuple):
@@ -34,42 +35,28 @@ class Constraint(NamedTuple):
 
 
 @leaf
-def forbid(
-    moves: NDArray[np.int64],
-    time: int,
-    forever: bool,
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
-) -> None:
+def forbid(moves: NDArray[np.int64], time: int, forever: bool, reserved: Reservations) -> None:
     """Enter a constraint into reservation tables."""
     for k in range(len(moves)):
         place = moves[k, 0]
         if forever:
             for b in range(9):
                 if moves[k, 1] >> b & 1:
-                    since[place, b] = min(since[place, b], time)
+                    reserved.since[place, b] = min(reserved.since[place, b], time)
         else:
-            table[place, time] |= np.uint16(moves[k, 1])
-            until[place] = max(until[place], time + 1)
+            reserved.table[place, time] |= np.uint16(moves[k, 1])
+            reserved.until[place] = max(reserved.until[place], time + 1)
 
 
 @leaf
-def permit(
-    moves: NDArray[np.int64],
-    time: int,
-    forever: bool,
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
-) -> None:
+def permit(moves: NDArray[np.int64], time: int, forever: bool, reserved: Reservations) -> None:
     """Empty what ``forbid`` has entered."""
     for k in range(len(moves)):
         place = moves[k, 0]
-        since[place, :] = 2**30
-        until[place] = 0
+        reserved.since[place, :] = 2**30
+        reserved.until[place] = 0
         if not forever:
-            table[place, time] = np.uint16(0)
+            reserved.table[place, time] = np.uint16(0)
 
 
 def split(

@@ -12,6 +12,7 @@ from lidarena.base.jit import leaf
 from lidarena.planning.team.prioritized import longest_first, plan_alone
 from lidarena.planning.team.reservations import move_between
 from lidarena.planning.team.route import free_from
+from lidarena.planning.team.search_arrays import Reservations
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
 
@@ -22,9 +23,7 @@ def _schedule(
     length: int,
     back_up: bool,
     neighbours: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
+    reserved: Reservations,
     before: NDArray[np.int32],
     result: NDArray[np.int32],
 ) -> int:
@@ -35,16 +34,14 @@ def _schedule(
         length: Steps of the path without waiting.
         back_up: Whether the robot may also drive backwards along its path.
         neighbours: (n, 9) where moves lead.
-        table: (n, times) reserved moves, see ``reservations``.
-        until: (n,) from when on none is.
-        since: (n, 9) from when on moves are taken for good.
+        reserved: Moves that are taken.
         before: (times, length + 1) room: the index on the path a step earlier, -1 where unreachable.
         result: (times,) gets the places, one a time step.
 
     Returns:
         The number of steps, -1 if there is no timing.
     """
-    rest = free_from(table, until, since, np.int64(path[length]))
+    rest = free_from(reserved, np.int64(path[length]))
     if rest < 0:
         return -1
     before[0, :] = -1
@@ -66,8 +63,8 @@ def _schedule(
                 if to < 0 or to > length:
                     continue
                 m = move_between(neighbours, here, np.int64(path[to]))
-                taken = t < until[here] and table[here, t] >> m & 1
-                if not taken and t < since[here, m]:
+                taken = t < reserved.until[here] and reserved.table[here, t] >> m & 1
+                if not taken and t < reserved.since[here, m]:
                     before[t + 1, to] = s
     return -1
 
@@ -90,9 +87,7 @@ def plan_coordination(traffic: Traffic, back_up: bool = False) -> TeamPlan:
             length,
             back_up,
             graph.neighbours,
-            traffic.table,
-            traffic.until,
-            traffic.since,
+            traffic.reserved,
             np.empty((traffic.capacity, length + 1), np.int32),
             result,
         )

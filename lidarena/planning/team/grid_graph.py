@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import kernel, leaf
 from lidarena.planning.team.moves import MOVES, footprints
 from lidarena.planning.team.open_list import pop, push
+from lidarena.planning.team.search_arrays import GraphArrays, TeamTables, empty_tables
 
 STEP = np.int64(4096)
 """What a time step costs, in the planners' units: a robot's cost is the number of its steps until it stays at its goal,
@@ -17,7 +18,7 @@ straight move, so that paths run straight."""
 
 UNREACHABLE = np.int64(2**30)
 _CACHED_GOALS = 4096
-_KEPT_WORKSPACES = 2
+_KEPT_TABLES = 2
 
 
 @kernel
@@ -86,25 +87,6 @@ def _flood_costs(
                 size = push(keys, items, size, new, there)
 
 
-class ReservationTables:
-    """Arrays of a size that is expensive to allocate, for one team at a time; see ``reservations`` and ``route``.
-
-    Args:
-        places: Number of places.
-        times: Steps up to which moves can be reserved.
-    """
-
-    def __init__(self, places: int, times: int) -> None:
-        self.times = times
-        self.table = np.zeros((places, times), np.uint16)
-        self.until = np.zeros(places, np.int32)
-        self.since = np.full((places, 9), UNREACHABLE, np.int32)
-        self.nodes = np.zeros((times * places, 3), np.int32)  # pages that no search touches cost nothing
-        room = 4 * times * places + 64
-        self.keys, self.items = np.empty(room, np.int64), np.empty(room, np.int32)
-        self.limits = np.array([2**31 - 1, 2**31 - 1, 0, 0], np.int64)
-
-
 class GridGraph:
     """The places of a grid for robots of one radius; a place is the number of a cell in raster order.
 
@@ -123,6 +105,7 @@ class GridGraph:
             positions in it.
         begins: Where each move's entries begin in ``entries``, see ``moves.footprints``.
         entries: The footprints.
+        arrays: The last four and ``neighbours``, as kernels take them.
         apart: Least distance of two robots [cells].
     """
 
@@ -139,8 +122,9 @@ class GridGraph:
         self.begins, self.entries = footprints(self.apart, connectivity, self.stride)
         self.at = ((self.cells[:, 0] + margin) * self.stride + self.cells[:, 1] + margin).astype(np.int32)
         self.padded = padded.ravel()
+        self.arrays = GraphArrays(self.neighbours, self.padded, self.at, self.begins, self.entries)
         self._ahead: dict[int, NDArray[np.int32]] = {}
-        self._spare: list[ReservationTables] = []
+        self._spare: list[TeamTables] = []
 
     def __len__(self) -> int:
         """Number of places."""
@@ -150,17 +134,17 @@ class GridGraph:
         """The place of a cell [row, column]; -1 where the robot cannot stand."""
         return int(self.index[cell[0], cell[1]])
 
-    def borrow(self, times: int) -> ReservationTables:
+    def borrow(self, times: int) -> TeamTables:
         """Empty tables for at least ``times`` steps, which nobody else has."""
         try:
             spare = self._spare.pop()
         except IndexError:
-            return ReservationTables(len(self), times)
-        return spare if spare.times >= times else ReservationTables(len(self), times)
+            return empty_tables(len(self), times)
+        return spare if spare.times >= times else empty_tables(len(self), times)
 
-    def give_back(self, tables: ReservationTables) -> None:
+    def give_back(self, tables: TeamTables) -> None:
         """Keep tables, empty again, for the next team."""
-        if len(self._spare) < _KEPT_WORKSPACES:
+        if len(self._spare) < _KEPT_TABLES:
             self._spare.append(tables)
 
     def ahead(self, goal: int) -> NDArray[np.int32]:

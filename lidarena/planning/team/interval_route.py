@@ -11,23 +11,24 @@ from numpy.typing import NDArray
 from lidarena.base.jit import leaf
 from lidarena.planning.team.open_list import pop, push
 from lidarena.planning.team.route import at_least, free_from
+from lidarena.planning.team.search_arrays import Reservations, SearchMemory
 
 
 @leaf
-def _begin(table: NDArray[np.uint16], until: NDArray[np.int32], place: int, t: int) -> int:
+def _begin(reserved: Reservations, place: int, t: int) -> int:
     """When the stretch of waiting in ``place`` begins that ``t`` belongs to."""
-    begin = min(t, int(until[place]))
-    while begin > 0 and not table[place, begin - 1] & 1:
+    begin = min(t, int(reserved.until[place]))
+    while begin > 0 and not reserved.table[place, begin - 1] & 1:
         begin -= 1
     return begin
 
 
 @leaf
-def _end(table: NDArray[np.uint16], until: NDArray[np.int32], since: NDArray[np.int32], place: int, t: int) -> int:
+def _end(reserved: Reservations, place: int, t: int) -> int:
     """The last time that a robot in ``place`` at ``t`` can be there without a move; 2**30 = for ever."""
-    final = int(since[place, 0])
-    for end in range(t, min(int(until[place]), final)):
-        if table[place, end] & 1:
+    final = int(reserved.since[place, 0])
+    for end in range(t, min(int(reserved.until[place]), final)):
+        if reserved.table[place, end] & 1:
             return end
     return max(final, t)
 
@@ -42,7 +43,7 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
     while at >= 0:
         arrival = int(nodes[at, 1]) // 4096
         if nodes[at, 2] < 0:
-            arrival = 0  # it starts there, if wanted with a delay
+            arrival = 0  # it starts there, with a delay if there is one
         for t in range(arrival, end + 1):
             path[t] = at // times
         end = arrival - 1
@@ -51,49 +52,36 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
 
 
 @leaf
-def _offer(
-    nodes: NDArray[np.int32],
-    stamp: int,
-    state: int,
-    spent: int,
-    before: int,
-    cost: int,
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
-    size: int,
-) -> int:
+def _offer(memory: SearchMemory, stamp: int, state: int, spent: int, before: int, cost: int, size: int) -> int:
     """Put a state on the open list unless it was reached as cheaply before; return the list's size."""
+    nodes = memory.nodes
     met = nodes[state, 0]
     if met > stamp or (met == stamp and nodes[state, 1] <= spent):
         return size
     nodes[state, 0], nodes[state, 1], nodes[state, 2] = stamp, spent, before
-    return push(keys, items, size, (cost << 31) - (spent ^ 4095), state)
+    return push(memory.keys, memory.items, size, (cost << 31) - (spent ^ 4095), state)
 
 
 @leaf
 def _depart(
     neighbours: NDArray[np.int32],
     ahead: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
+    reserved: Reservations,
     state: int,
     m: int,
     rest: int,
     stamp: int,
-    limits: NDArray[np.int64],
-    nodes: NDArray[np.int32],
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
+    memory: SearchMemory,
     size: int,
 ) -> int:
     """Offer what move ``m`` from ``state`` leads to: for each stretch of time there the first departure into it.
 
     Returns:
-        The open list's size, -1 when it is full; sets the sign of ``limits[0]`` where the bound was in the way.
+        The open list's size, -1 when it is full; sets the sign of ``memory.limits[0]`` where the bound was in the way.
     """
+    table, until, since, limits = reserved.table, reserved.until, reserved.since, memory.limits
     times = table.shape[1]
-    here, spent = state // times, int(nodes[state, 1])
+    here, spent = state // times, int(memory.nodes[state, 1])
     there, t = int(neighbours[here, m]), spent // 4096
     small = (spent & 4095) + (1 if m > 4 else 0)
     most = limits[0] if limits[0] >= 0 else ~limits[0]
@@ -104,11 +92,11 @@ def _depart(
             if cost > most:
                 limits[0] = ~most
                 return size
-            if size + 1 >= len(keys):
+            if size + 1 >= len(memory.keys):
                 return -1
-            following = there * times + _begin(table, until, there, later)
-            size = _offer(nodes, stamp, following, later * 4096 + small, state, cost, keys, items, size)
-            later = max(_end(table, until, since, there, later), later)
+            following = there * times + _begin(reserved, there, later)
+            size = _offer(memory, stamp, following, later * 4096 + small, state, cost, size)
+            later = max(_end(reserved, there, later), later)
             if later >= 2**30:
                 return size
         while t < later and t < since[here, 0] and (t >= until[here] or not table[here, t] & 1):
@@ -122,38 +110,33 @@ def _depart(
 def find_quick_route(
     neighbours: NDArray[np.int32],
     ahead: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
+    reserved: Reservations,
     ends: NDArray[np.int64],
     delay: int,
-    limits: NDArray[np.int64],
-    nodes: NDArray[np.int32],
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
+    memory: SearchMemory,
     path: NDArray[np.int32],
 ) -> int:
     """Find the way from ``ends[0]`` to ``ends[1]`` with the fewest steps, among those the fewest diagonals.
 
     Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins. The
-    robot leaves its start at ``delay`` at the earliest, unless somebody comes too close there before. Where the
-    greatest cost cut the search off, ``limits[0]`` comes back with its bits inverted.
+    robot leaves its start at ``delay`` at the earliest, unless somebody comes too close there before.
     """
-    times = table.shape[1]
+    nodes, limits, since = memory.nodes, memory.limits, reserved.since
+    times = reserved.table.shape[1]
     start, goal = ends[0], ends[1]
     stamp = limits[2] + 2
     limits[2], limits[3] = stamp, 0
-    rest = free_from(table, until, since, goal)
+    rest = free_from(reserved, goal)
     if rest < 0 or ahead[start] >= 2**30:
         return -1
-    delay = min(delay, _end(table, until, since, start, np.int64(0)))
+    delay = min(delay, _end(reserved, start, np.int64(0)))
     cost = at_least(delay * 4096 + ahead[start], rest)
     if cost > limits[0]:
         return -2
-    size = _offer(nodes, stamp, start * times, delay * 4096, np.int64(-1), cost, keys, items, np.int64(0))
+    size = _offer(memory, stamp, start * times, delay * 4096, np.int64(-1), cost, np.int64(0))
     while size > 0:
-        state = int(items[0])
-        size = pop(keys, items, size)
+        state = int(memory.items[0])
+        size = pop(memory.keys, memory.items, size)
         if nodes[state, 0] > stamp:
             continue
         nodes[state, 0] = stamp + 1
@@ -166,9 +149,7 @@ def find_quick_route(
         spent = int(nodes[state, 1])
         for m in range(1, 9):
             if neighbours[here, m] >= 0 and spent // 4096 < since[here, m]:
-                size = _depart(
-                    neighbours, ahead, table, until, since, state, m, rest, stamp, limits, nodes, keys, items, size
-                )
+                size = _depart(neighbours, ahead, reserved, state, m, rest, stamp, memory, size)
                 if size < 0:
                     return -2
     return -2 if limits[0] < 0 else -1

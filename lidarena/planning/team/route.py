@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
 from lidarena.planning.team.open_list import pop, push
+from lidarena.planning.team.search_arrays import PlaceCosts, Reservations, SearchMemory
 
 NO_WAY = -1
 """Every state has been searched."""
@@ -20,19 +21,19 @@ GAVE_UP = -2
 
 
 @leaf
-def free_from(table: NDArray[np.uint16], until: NDArray[np.int32], since: NDArray[np.int32], goal: int) -> int:
+def free_from(reserved: Reservations, goal: int) -> int:
     """The first time from which on nobody comes too close to ``goal``; -1 if somebody rests there."""
-    if since[goal, 0] < 2**30:
+    if reserved.since[goal, 0] < 2**30:
         return -1
-    for t in range(until[goal] - 1, -1, -1):
-        if table[goal, t] & 1:
+    for t in range(reserved.until[goal] - 1, -1, -1):
+        if reserved.table[goal, t] & 1:
             return t + 1
     return 0
 
 
 @inlined
 def at_least(cost: int, rest: int) -> int:
-    """A cost that ends at ``rest`` or later, small units at their most, lest they rank what is equally late."""
+    """A cost that ends at ``rest`` or later, all its small units set, which then do not rank what is equally late."""
     return max(cost, rest * 4096 + 4095 if rest > 0 else 0)
 
 
@@ -56,97 +57,77 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
 @leaf
 def _expand(
     neighbours: NDArray[np.int32],
-    ahead: NDArray[np.int32],
-    base: NDArray[np.int32],
-    layer: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    since: NDArray[np.int32],
+    costs: PlaceCosts,
+    reserved: Reservations,
     last: int,
     rest: int,
     stamp: int,
     state: int,
-    limits: NDArray[np.int64],
-    nodes: NDArray[np.int32],
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
+    memory: SearchMemory,
     size: int,
 ) -> int:
     """Offer what the free moves from ``state`` lead to; return the open list's size.
 
-    Sets the sign of ``limits[0]`` where the bound was in the way. The other arguments are ``find_route``'s.
+    Sets the sign of ``memory.limits[0]`` where the bound was in the way. The other arguments are ``find_route``'s.
     """
-    times = table.shape[1]
+    nodes, limits, layer = memory.nodes, memory.limits, costs.layer
+    times = reserved.table.shape[1]
     here, t = state // times, state % times
     later, row = min(t + 1, last), min(t + 1, len(layer) - 1)
-    taken = int(table[here, t]) if t < last else 0
+    taken = int(reserved.table[here, t]) if t < last else 0
     most = limits[0] if limits[0] >= 0 else ~limits[0]
     for m in range(9):
         there = int(neighbours[here, m])
-        if there < 0 or taken >> m & 1 or t >= since[here, m]:
+        if there < 0 or taken >> m & 1 or t >= reserved.since[here, m]:
             continue
-        spent = int(nodes[state, 1]) + 4096 + (1 if m > 4 else 0) + base[there] + layer[row, there]
+        spent = int(nodes[state, 1]) + 4096 + (1 if m > 4 else 0) + costs.base[there] + layer[row, there]
         following = there * times + later
         met = nodes[following, 0]
         if met > stamp or (met == stamp and nodes[following, 1] <= spent):
             continue
-        cost = at_least(spent + ahead[there], rest)
+        cost = at_least(spent + costs.ahead[there], rest)
         if cost > most:
             limits[0] = ~most
             continue
         nodes[following, 0], nodes[following, 1], nodes[following, 2] = stamp, spent, state
-        size = push(keys, items, size, (cost << 31) - (spent ^ 4095), following)
+        size = push(memory.keys, memory.items, size, (cost << 31) - (spent ^ 4095), following)
     return size
 
 
 @leaf
 def find_route(
     neighbours: NDArray[np.int32],
-    ahead: NDArray[np.int32],
-    base: NDArray[np.int32],
-    layer: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
+    costs: PlaceCosts,
+    reserved: Reservations,
     last: int,
     ends: NDArray[np.int64],
-    limits: NDArray[np.int64],
-    nodes: NDArray[np.int32],
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
+    memory: SearchMemory,
     path: NDArray[np.int32],
 ) -> int:
     """Find a way from ``ends[0]`` to ``ends[1]``.
 
     Args:
         neighbours: (n, 9) where moves lead.
-        ahead: (n,) exact cost to the goal without other robots.
-        base: (n,) surcharge of being in a place for a step.
-        layer: (times, n) further surcharge by time; its last row holds for all later times.
-        table: (n, times) reserved moves, see ``reservations``.
-        until: (n,) from when on none is.
-        since: (n, 9) from when on moves are taken for good.
-        last: Time at which the last of the other robots has come to rest, below the times of ``table``.
+        costs: Of the robot: ``ahead`` is (n,).
+        reserved: Moves that are taken.
+        last: Time at which the last of the other robots has come to rest, below the times of ``reserved``.
         ends: (2,) start and goal.
-        limits: (4,) greatest cost; most states to expand; and, changed here, the stamp of the last search and the
-            number of states that were expanded. Where the greatest cost cut the search off, it comes back with its
-            bits inverted.
-        nodes: (n * times, 3) stamp, cost so far and state before; kept between searches.
-        keys: (m,) room for the open list.
-        items: (m,) room for the open list.
+        memory: The search's limits and memory.
         path: (length,) gets the places, one a time step.
 
     Returns:
         The number of steps, or NO_WAY or GAVE_UP.
     """
-    times = table.shape[1]
+    nodes, keys, items, limits = memory.nodes, memory.keys, memory.items, memory.limits
+    times = reserved.table.shape[1]
     start, goal = ends[0], ends[1]
     stamp = limits[2] + 2  # of a state that was met; one more means that it is closed
     limits[2], limits[3] = stamp, 0
-    rest = free_from(table, until, since, goal)
-    if rest < 0 or ahead[start] >= 2**30:
+    rest = free_from(reserved, goal)
+    if rest < 0 or costs.ahead[start] >= 2**30:
         return -1
     nodes[start * times, 0], nodes[start * times, 1], nodes[start * times, 2] = stamp, 0, -1
-    cost = at_least(np.int64(ahead[start]), rest)
+    cost = at_least(np.int64(costs.ahead[start]), rest)
     if cost > limits[0]:
         return -2
     size = push(keys, items, np.int64(0), cost << 31, start * times)
@@ -162,7 +143,5 @@ def find_route(
         limits[3] += 1
         if limits[3] > limits[1] or size + 9 > len(keys):
             return -2
-        size = _expand(
-            neighbours, ahead, base, layer, table, since, last, rest, stamp, state, limits, nodes, keys, items, size
-        )
+        size = _expand(neighbours, costs, reserved, last, rest, stamp, state, memory, size)
     return -2 if limits[0] < 0 else -1

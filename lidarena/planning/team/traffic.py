@@ -1,188 +1,135 @@
-"""The paths of a team and the tables that they fill: what every method of this room plans upon."""
+"""The paths of a team and the tables that they fill: what every method of this folder plans with."""
 
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf, merged
+from lidarena.base.jit import inlined, leaf, merged
 from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph
 from lidarena.planning.team.interval_route import find_quick_route
 from lidarena.planning.team.reservations import clear, reserve
 from lidarena.planning.team.route import find_route
+from lidarena.planning.team.search_arrays import GraphArrays, PlaceCosts, Reservations, SearchMemory, TeamPaths
 
+FlatArrays = tuple[NDArray[Any], ...]
 NO_BOUND = np.int64(2**31 - 1)
 
 
 @merged
 def _plan_in_order(
     order: NDArray[np.int64],
-    neighbours: NDArray[np.int32],
-    padded: NDArray[np.int32],
-    at: NDArray[np.int32],
-    begins: NDArray[np.int64],
-    entries: NDArray[np.int64],
-    ahead: NDArray[np.int32],
-    base: NDArray[np.int32],
-    layer: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
-    ends: NDArray[np.int64],
-    delays: NDArray[np.int64],
-    limits: NDArray[np.int64],
-    nodes: NDArray[np.int32],
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
-    paths: NDArray[np.int32],
-    lengths: NDArray[np.int64],
-    placed: NDArray[np.bool_],
+    graph: GraphArrays,
+    costs: PlaceCosts,
+    reserved: Reservations,
+    memory: SearchMemory,
+    team: TeamPaths,
     timed: bool,
     budget: int,
 ) -> int:
-    """Plan the robots of ``order`` one after the other past those that are ``placed``, and place them.
+    """Plan the robots of ``order`` one after the other past those that are placed, and place them.
 
-    ``budget``: greatest number of steps of all robots of ``order`` together; -1 = any.
+    ``costs`` are those of the whole team; the other arguments as in ``_plan_group``.
 
     Returns:
         How many were placed before one failed.
     """
+    ahead, ends = costs.ahead, team.ends
     after = np.int64(0)  # what the robots still to come need at least
     for k in range(len(order)):
         after += ahead[order[k], ends[order[k], 0]] // 4096
     for k in range(len(order)):
         robot = order[k]
         last = np.int64(0)
-        for other in range(len(lengths)):
-            if placed[other]:
-                last = max(last, lengths[other])
+        for other in range(len(team.lengths)):
+            if team.placed[other]:
+                last = max(last, team.lengths[other])
         after -= ahead[robot, ends[robot, 0]] // 4096
-        limits[0] = (budget - after) * 4096 + 4095 if budget >= 0 else 2**31 - 1
+        memory.limits[0] = (budget - after) * 4096 + 4095 if budget >= 0 else 2**31 - 1
+        path = team.paths[robot]
         if timed:
-            steps = find_route(
-                neighbours, ahead[robot], base, layer, table, until, since, last, ends[robot],
-                limits, nodes, keys, items, paths[robot],
-            )  # fmt: skip
+            own = PlaceCosts(ahead[robot], costs.base, costs.layer)
+            steps = find_route(graph.neighbours, own, reserved, last, ends[robot], memory, path)
         else:
-            steps = find_quick_route(
-                neighbours, ahead[robot], table, until, since, ends[robot], delays[robot],
-                limits, nodes, keys, items, paths[robot],
-            )  # fmt: skip
+            delay = team.delays[robot]
+            steps = find_quick_route(graph.neighbours, ahead[robot], reserved, ends[robot], delay, memory, path)
         if steps < 0:
             return k
         budget = budget - steps if budget >= 0 else budget
-        lengths[robot] = steps
-        placed[robot] = True
-        reserve(paths[robot], steps, neighbours, padded, at, begins, entries, table, until, since)
+        team.lengths[robot] = steps
+        team.placed[robot] = True
+        reserve(path, steps, graph, reserved)
     return len(order)
 
 
 @leaf
-def _place_all(
-    neighbours: NDArray[np.int32],
-    padded: NDArray[np.int32],
-    at: NDArray[np.int32],
-    begins: NDArray[np.int64],
-    entries: NDArray[np.int64],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
-    paths: NDArray[np.int32],
-    lengths: NDArray[np.int64],
-    placed: NDArray[np.bool_],
-) -> None:
-    for robot in range(len(lengths)):
-        if placed[robot]:
-            reserve(paths[robot], lengths[robot], neighbours, padded, at, begins, entries, table, until, since)
+def _place_all(graph: GraphArrays, reserved: Reservations, team: TeamPaths) -> None:
+    for robot in range(len(team.lengths)):
+        if team.placed[robot]:
+            reserve(team.paths[robot], team.lengths[robot], graph, reserved)
 
 
 @leaf
-def _clear_some(
-    robots: NDArray[np.int64],
-    neighbours: NDArray[np.int32],
-    padded: NDArray[np.int32],
-    at: NDArray[np.int32],
-    begins: NDArray[np.int64],
-    entries: NDArray[np.int64],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
-    paths: NDArray[np.int32],
-    lengths: NDArray[np.int64],
-) -> None:
+def _clear_some(robots: NDArray[np.int64], graph: GraphArrays, reserved: Reservations, team: TeamPaths) -> None:
     for k in range(len(robots)):
-        r = robots[k]
-        clear(paths[r], lengths[r], neighbours, padded, at, begins, entries, table, until, since)
+        clear(team.paths[robots[k]], team.lengths[robots[k]], graph, reserved)
 
 
 @leaf
-def _plan_group(
-    group: NDArray[np.int64],
-    neighbours: NDArray[np.int32],
-    padded: NDArray[np.int32],
-    at: NDArray[np.int32],
-    begins: NDArray[np.int64],
-    entries: NDArray[np.int64],
-    ahead: NDArray[np.int32],
-    base: NDArray[np.int32],
-    layer: NDArray[np.int32],
-    table: NDArray[np.uint16],
-    until: NDArray[np.int32],
-    since: NDArray[np.int32],
-    ends: NDArray[np.int64],
-    delays: NDArray[np.int64],
-    limits: NDArray[np.int64],
-    nodes: NDArray[np.int32],
-    keys: NDArray[np.int64],
-    items: NDArray[np.int32],
-    paths: NDArray[np.int32],
-    lengths: NDArray[np.int64],
-    placed: NDArray[np.bool_],
-    timed: bool,
-    budget: int,
-    kept_paths: NDArray[np.int32],
-    kept_lengths: NDArray[np.int64],
-    anew: bool,
-) -> int:
+def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budget: int, anew: bool) -> int:
     """Plan robots; where ``anew``, they are placed, and keep their old paths unless the sum of steps is no larger.
 
-    One kernel for both, since the searches in it take long to compile. ``kept_paths`` and ``kept_lengths`` have
-    ``paths``' and ``lengths``' shapes; they are scratch.
+    One kernel for both, since the searches in it take long to compile.
+
+    Args:
+        group: The robots, first the one with the highest priority.
+        arrays: Those of ``GraphArrays``, ``PlaceCosts`` (``ahead`` is (k, n)), ``Reservations``, ``SearchMemory`` and
+            ``TeamPaths``, one after the other: handing five named tuples over takes as long as a small search.
+        timed: Whether to search places at times, not safe intervals.
+        budget: Greatest number of steps of all robots of ``group`` together; -1 = any.
+        anew: Whether ``group`` is placed.
 
     Returns:
         How many robots were placed before one failed; where ``anew`` the steps saved, -1 if the old paths were kept.
     """
+    graph, costs = GraphArrays(*arrays[0:5]), PlaceCosts(*arrays[5:8])
+    reserved, memory, team = Reservations(*arrays[8:11]), SearchMemory(*arrays[11:15]), TeamPaths(*arrays[15:22])
     if anew:
         budget = 0
         for k in range(len(group)):
             robot = group[k]
-            budget += int(lengths[robot])
-            kept_lengths[robot] = lengths[robot]
-            for t in range(lengths[robot] + 1):
-                kept_paths[robot, t] = paths[robot, t]
-        _clear_some(group, neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
+            budget += int(team.lengths[robot])
+            _copy_path(team.paths, team.lengths, team.kept_paths, team.kept_lengths, robot)
+        _clear_some(group, graph, reserved, team)
         for k in range(len(group)):
-            placed[group[k]] = False
-        _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
-    planned = _plan_in_order(
-        group, neighbours, padded, at, begins, entries, ahead, base, layer, table, until, since, ends, delays,
-        limits, nodes, keys, items, paths, lengths, placed, timed, budget,
-    )  # fmt: skip
+            team.placed[group[k]] = False
+        _place_all(graph, reserved, team)
+    planned = _plan_in_order(group, graph, costs, reserved, memory, team, timed, budget)
     if not anew:
         return planned
     if planned == len(group):
         for k in range(len(group)):
-            budget -= int(lengths[group[k]])
+            budget -= int(team.lengths[group[k]])
         return budget
-    _clear_some(group[:planned], neighbours, padded, at, begins, entries, table, until, since, paths, lengths)
+    _clear_some(group[:planned], graph, reserved, team)
     for k in range(len(group)):
-        robot = group[k]
-        lengths[robot] = kept_lengths[robot]
-        placed[robot] = True
-        for t in range(lengths[robot] + 1):
-            paths[robot, t] = kept_paths[robot, t]
-    _place_all(neighbours, padded, at, begins, entries, table, until, since, paths, lengths, placed)
+        team.placed[group[k]] = True
+        _copy_path(team.kept_paths, team.kept_lengths, team.paths, team.lengths, group[k])
+    _place_all(graph, reserved, team)
     return -1
+
+
+@inlined
+def _copy_path(
+    source: NDArray[np.int32],
+    source_lengths: NDArray[np.int64],
+    target: NDArray[np.int32],
+    target_lengths: NDArray[np.int64],
+    robot: int,
+) -> None:
+    target_lengths[robot] = source_lengths[robot]
+    for t in range(source_lengths[robot] + 1):
+        target[robot, t] = source[robot, t]
 
 
 class Traffic:
@@ -199,6 +146,8 @@ class Traffic:
         paths: (k, capacity) int32 places, one a time step, valid up to ``lengths``.
         lengths: (k,) steps until each robot stays at its goal.
         placed: (k,) bool, whose paths are in the tables.
+        reserved: The reservation tables.
+        memory: Limits and memory of the searches.
         delays: (k,) steps that each robot waits at its start before it leaves, so that others get past; 0 unless set.
         ahead: (k, n) int32 what the rest of the way costs from every place.
         alone: (k,) steps that each robot needs without the others.
@@ -221,15 +170,14 @@ class Traffic:
         self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
         self._tables = graph.borrow(self.capacity)
-        work = self._tables
-        self.table, self.until, self.since = work.table, work.until, work.since
-        self.nodes, self.keys, self.items, self.limits = work.nodes, work.keys, work.items, work.limits
-        self.limits[:2] = NO_BOUND
-        self.delays = np.zeros(team, np.int64)
-        self.paths = np.zeros((team, self.capacity), np.int32)
-        self.lengths = np.zeros(team, np.int64)
+        self.reserved, self.memory = self._tables
+        self.memory.limits[:2] = NO_BOUND
+        paths, lengths = np.zeros((team, self.capacity), np.int32), np.zeros(team, np.int64)
+        self.delays, self.paths, self.lengths = np.zeros(team, np.int64), paths, lengths
         self.placed = np.zeros(team, np.bool_)
-        self._kept_paths, self._kept_lengths = np.zeros_like(self.paths), np.zeros_like(self.lengths)
+        self._team = TeamPaths(
+            ends, self.delays, paths, lengths, self.placed, np.zeros_like(paths), np.zeros_like(lengths)
+        )
 
     def __len__(self) -> int:
         """Number of robots."""
@@ -237,45 +185,13 @@ class Traffic:
 
     def close(self) -> None:
         """Empty the tables and give the room for searches back; the paths stay."""
-        _clear_some(
-            np.flatnonzero(self.placed),
-            self.graph.neighbours,
-            *self._footprints,
-            self.table,
-            self.until,
-            self.since,
-            self.paths,
-            self.lengths,
-        )
+        _clear_some(np.flatnonzero(self.placed), self.graph.arrays, self.reserved, self._team)
         self.graph.give_back(self._tables)
 
-    @property
-    def _arrays(self) -> tuple[Any, ...]:
-        """The arguments that the kernels of planning share, in their order."""
-        return (
-            self.graph.neighbours,
-            *self._footprints,
-            self.ahead,
-            self.base,
-            self.layer,
-            self.table,
-            self.until,
-            self.since,
-            self.ends,
-            self.delays,
-            self.limits,
-            self.nodes,
-            self.keys,
-            self.items,
-            self.paths,
-            self.lengths,
-            self.placed,
-            self.timed,
-        )
-
-    @property
-    def _footprints(self) -> tuple[NDArray[np.int32], NDArray[np.int32], NDArray[np.int64], NDArray[np.int64]]:
-        return self.graph.padded, self.graph.at, self.graph.begins, self.graph.entries
+    def _plan(self, group: NDArray[np.int64], budget: int, anew: bool) -> int:
+        costs = (self.ahead, self.base, self.layer)
+        arrays = (*self.graph.arrays, *costs, *self.reserved, *self.memory, *self._team)
+        return _plan_group(group, arrays, self.timed, budget, anew)
 
     def plan(self, order: NDArray[np.int64], budget: int = -1) -> int:
         """Plan robots one after the other past those that are placed, and place them.
@@ -287,7 +203,7 @@ class Traffic:
         Returns:
             How many were placed before one failed.
         """
-        return _plan_group(order, *self._arrays, budget, self._kept_paths, self._kept_lengths, False)
+        return self._plan(order, budget, False)
 
     def replan(self, group: NDArray[np.int64]) -> int:
         """Plan robots, all of them placed, anew in this order; the old paths stay unless the sum is no larger.
@@ -295,36 +211,24 @@ class Traffic:
         Returns:
             Steps saved; -1 if the old paths were kept.
         """
-        saved: int = _plan_group(group, *self._arrays, -1, self._kept_paths, self._kept_lengths, True)
-        return saved
+        return self._plan(group, -1, True)
 
     def remove(self, robots: NDArray[np.int64]) -> None:
         """Take robots' paths out of the tables; the paths themselves stay where they are."""
-        arrays = (
-            self.graph.neighbours,
-            *self._footprints,
-            self.table,
-            self.until,
-            self.since,
-            self.paths,
-            self.lengths,
-        )
-        _clear_some(robots[self.placed[robots]], *arrays)
+        _clear_some(robots[self.placed[robots]], self.graph.arrays, self.reserved, self._team)
         self.placed[robots] = False
-        _place_all(*arrays, self.placed)
+        _place_all(self.graph.arrays, self.reserved, self._team)
 
     def place(self, robots: NDArray[np.int64]) -> None:
         """Enter robots' paths, as they are, into the tables."""
         for robot in robots:
-            r = int(robot)
-            arrays = (self.graph.neighbours, *self._footprints, self.table, self.until, self.since)
-            reserve(self.paths[r], self.lengths[r], *arrays)
+            reserve(self.paths[robot], self.lengths[robot], self.graph.arrays, self.reserved)
         self.placed[robots] = True
 
     @property
     def expanded(self) -> int:
         """States that the last search expanded."""
-        return int(self.limits[3])
+        return int(self.memory.limits[3])
 
     def cost(self) -> int:
         """Steps of all robots together."""

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 from lidarena.base.errors import TeamError
 from lidarena.planning import TeamPlan, plan_team
+from lidarena.planning.team.search_arrays import NEVER, Reservations
 
 MOVES = [(0, 0), (0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)]
 
@@ -107,3 +108,8 @@ def brute_force(problem) -> float:  # noqa: C901 - all of it in one place, to be
                     best[following] = spent + price
                     heapq.heappush(queue, (spent + price, next(number), following))
     return float("inf")
+
+
+def is_empty(reserved: Reservations) -> bool:
+    """Whether no move is taken at any time."""
+    return not reserved.table.any() and not reserved.until.any() and bool((reserved.since == NEVER).all())

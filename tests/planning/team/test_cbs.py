@@ -8,10 +8,9 @@ from hypothesis import strategies as st
 
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.cbs import CbsResult, ConflictBasedSearch
-from lidarena.planning.team.grid_graph import UNREACHABLE
 from lidarena.planning.team.prioritized import conflicts_of
 from lidarena.planning.team.traffic import Traffic
-from tests.planning.team.problems import Problem, brute_force, problems
+from tests.planning.team.problems import Problem, brute_force, is_empty, problems
 from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
@@ -21,7 +20,7 @@ TINY = problems(robots=st.just(2), sides=st.integers(2, 3))
 def search(problem: Problem, nodes: int, upper: int | None = None) -> tuple[CbsResult, Traffic]:
     traffic = traffic_of(problem)
     result = ConflictBasedSearch(traffic, upper).run(Budget(math.inf, nodes))
-    assert not traffic.table.any() and not traffic.until.any() and (traffic.since == UNREACHABLE).all()
+    assert is_empty(traffic.reserved)
     assert not traffic.placed.any()
     return result, traffic
 

@@ -8,12 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning.team.constraints import Constraint, forbid, permit, split
-from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import MOVES
-from tests.planning.team.problems import meet
+from lidarena.planning.team.search_arrays import empty_tables
+from tests.planning.team.problems import is_empty, meet
 
 SIDE, TIMES = 8, 12
-ROADS = {radius: GridGraph(np.zeros((SIDE, SIDE), bool), 8, radius) for radius in (0.0, 0.5, 0.9)}
+GRAPHS = {radius: GridGraph(np.zeros((SIDE, SIDE), bool), 8, radius) for radius in (0.0, 0.5, 0.9)}
 
 
 def places_and_moves(constraint: Constraint) -> list[tuple[int, int]]:
@@ -31,7 +32,7 @@ def together(graph: GridGraph, one: tuple[int, int], other: tuple[int, int]) -> 
 @st.composite
 def conflicting(draw: st.DrawFn) -> tuple[GridGraph, tuple[int, int], tuple[int, int]]:
     """Two robots in the middle of a hall whose moves conflict."""
-    graph = ROADS[draw(st.sampled_from(sorted(ROADS)))]
+    graph = GRAPHS[draw(st.sampled_from(sorted(GRAPHS)))]
     pairs = []
     one = (graph.place(np.array([4, 4])), draw(st.integers(0, 8)))
     for cell in itertools.product(range(2, 7), repeat=2):
@@ -57,10 +58,10 @@ def test_both_moves_are_forbidden_and_any_two_that_are_would_conflict(
     assert all(together(graph, a, b) for a, b in itertools.product(*forbidden))
 
 
-@pytest.mark.parametrize("radius", sorted(ROADS))
+@pytest.mark.parametrize("radius", sorted(GRAPHS))
 @pytest.mark.parametrize("resting", [0, 1])
 def test_one_at_its_goal_is_never_come_close_to_or_arrives_later(radius: float, resting: int) -> None:
-    graph = ROADS[radius]
+    graph = GRAPHS[radius]
     goal = graph.place(np.array([3, 4]))
     ends = np.array([[0, 0], [0, 0]], np.int64)
     ends[resting, 1] = goal
@@ -74,20 +75,16 @@ def test_one_at_its_goal_is_never_come_close_to_or_arrives_later(radius: float, 
     assert inside == {(p, m) for p, m in close if graph.neighbours[p, m] >= 0}
 
 
-def tables(places: int) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    since = np.full((places, 9), UNREACHABLE, np.int32)
-    return np.zeros((places, TIMES), np.uint16), np.zeros(places, np.int32), since
-
-
 @settings(max_examples=40, deadline=None)
 @given(st.lists(st.tuples(st.integers(0, 5), st.integers(1, 511)), min_size=1, max_size=4), st.integers(0, 9))
 def test_what_is_forbidden_stands_in_the_tables_until_it_is_permitted(moves: list[tuple[int, int]], time: int) -> None:
     for forever in (False, True):
-        table, until, since = tables(6)
-        forbid(np.array(moves, np.int64), time, forever, table, until, since)
+        reserved = empty_tables(6, TIMES).reserved
+        table, until, since = reserved
+        forbid(np.array(moves, np.int64), time, forever, reserved)
         wanted = {(place, m) for place, bits in moves for m in range(9) if bits >> m & 1}
         for place, m, t in itertools.product(range(6), range(9), range(TIMES)):
             taken = bool((t < until[place] and table[place, t] >> m & 1) or t >= since[place, m])
             assert taken == ((place, m) in wanted and (t >= time if forever else t == time))
-        permit(np.array(moves, np.int64), time, forever, table, until, since)
-        assert not table.any() and not until.any() and (since == UNREACHABLE).all()
+        permit(np.array(moves, np.int64), time, forever, reserved)
+        assert is_empty(reserved)

@@ -13,7 +13,7 @@ from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph
 from lidarena.planning.team.moves import MOVES, conflicting_moves
 from lidarena.planning.team.open_list import pop, push
 from lidarena.planning.team.traffic import Traffic
-from tests.planning.team.problems import meet, problems
+from tests.planning.team.problems import is_empty, meet, problems
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
@@ -90,7 +90,7 @@ def test_safe_intervals_find_what_places_at_times_find(problem):
             slow.remove(one)  # the same path for both, so that the next robot meets the same tables
             slow.paths[robot], slow.lengths[robot] = quick.paths[robot], quick.lengths[robot]
             slow.place(one)
-    assert np.array_equal(quick.table[:, : quick.capacity], slow.table[:, : quick.capacity])
+    assert np.array_equal(quick.reserved.table[:, : quick.capacity], slow.reserved.table[:, : quick.capacity])
 
 
 @settings(max_examples=40, deadline=None, suppress_health_check=SLOW)
@@ -107,7 +107,9 @@ def test_replanning_keeps_the_tables_in_step_with_the_paths(problem):
         fresh = traffic_of(problem)
         fresh.paths[:], fresh.lengths[:] = traffic.paths, traffic.lengths
         fresh.place(np.arange(len(traffic)))
-        assert np.array_equal(fresh.table, traffic.table) and np.array_equal(fresh.since, traffic.since)
+        assert np.array_equal(fresh.reserved.table, traffic.reserved.table) and np.array_equal(
+            fresh.reserved.since, traffic.reserved.since
+        )
         assert (conflict_times(traffic.graph.cells, traffic.paths, traffic.lengths, traffic.graph.apart) < 0).all()
 
 
@@ -115,6 +117,6 @@ def test_the_room_for_searches_comes_back_empty():
     graph = GridGraph(np.zeros((6, 6), bool), 8, 0.5)
     for _ in range(3):
         traffic = Traffic(graph, np.array([[0, 35], [35, 0]], np.int64))
-        assert not traffic.table.any() and not traffic.until.any() and (traffic.since == UNREACHABLE).all()
+        assert is_empty(traffic.reserved)
         assert traffic.plan(np.array([0, 1])) == 2
         traffic.close()

@@ -6,11 +6,12 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import MOVES
 from lidarena.planning.team.reservations import clear, move_between, reserve
 from lidarena.planning.team.route import free_from
-from tests.planning.team.problems import meet
+from lidarena.planning.team.search_arrays import empty_tables
+from tests.planning.team.problems import is_empty, meet
 from tests.planning.team.walks import Walks, cell, walks
 
 TIMES = 16
@@ -22,20 +23,16 @@ class Tables:
     def __init__(self, team: Walks) -> None:
         places = len(team.graph)
         self.team = team
-        self.table, self.until = np.zeros((places, TIMES), np.uint16), np.zeros(places, np.int32)
-        self.since = np.full((places, 9), UNREACHABLE, np.int32)
+        self.reserved = empty_tables(places, TIMES).reserved
+        self.table, self.until, self.since = self.reserved
 
     def arrays(self, robot: int) -> tuple:
         graph, length = self.team.graph, int(self.team.lengths[robot])
-        footprints = (graph.padded, graph.at, graph.begins, graph.entries)
-        return (self.team.paths[robot], length, graph.neighbours, *footprints, self.table, self.until, self.since)
+        return self.team.paths[robot], length, graph.arrays, self.reserved
 
     def taken(self, place: int, move: int, t: int) -> bool:
         reserved = t < self.until[place] and self.table[place, t] >> move & 1
         return bool(reserved or t >= self.since[place, move])
-
-    def empty(self) -> bool:
-        return not self.table.any() and not self.until.any() and bool((self.since == UNREACHABLE).all())
 
 
 def conflicts_with(team: Walks, robots: tuple[int, ...], place: int, move: int, t: int) -> bool:
@@ -68,7 +65,7 @@ def test_clearing_empties_what_reserving_filled(team: Walks) -> None:
     assert np.array_equal(tables.table, alone.table) and np.array_equal(tables.since, alone.since)
     assert np.array_equal(tables.until, alone.until)
     clear(*tables.arrays(1))
-    assert tables.empty()
+    assert is_empty(tables.reserved)
 
 
 @settings(max_examples=30, deadline=None)
@@ -80,7 +77,7 @@ def test_a_goal_is_free_once_nobody_comes_close_any_more(team: Walks, data: st.D
     last = int(team.lengths.max()) + 1
     busy = [t for t in range(last + 1) if conflicts_with(team, (0, 1), goal, 0, t)]
     expected = -1 if last in busy else max(busy, default=-1) + 1
-    assert free_from(tables.table, tables.until, tables.since, goal) == expected
+    assert free_from(tables.reserved, goal) == expected
 
 
 def test_a_move_is_told_by_where_it_leads() -> None:

@@ -4,12 +4,12 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning.team.budget import Budget
-from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.prioritized import conflicts_of, longest_first, plan_alone, plan_independent
 from lidarena.planning.team.search import find_order
 from lidarena.planning.team.team_plan import failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
-from tests.planning.team.problems import Problem, problems
+from tests.planning.team.problems import Problem, is_empty, problems
 from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
@@ -17,10 +17,6 @@ SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_
 
 def hall(*ends: tuple[int, int], rows: int = 5, cols: int = 9) -> Traffic:
     return Traffic(GridGraph(np.zeros((rows, cols), bool), 8, 0.0), np.array(ends, np.int64))
-
-
-def is_empty(traffic: Traffic) -> bool:
-    return not traffic.table.any() and not traffic.until.any() and bool((traffic.since == UNREACHABLE).all())
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=SLOW)
@@ -32,15 +28,17 @@ def test_whoever_is_removed_and_placed_again_leaves_the_tables_as_they_were(
     placed = traffic.plan(np.arange(len(traffic)))
     everyone = np.flatnonzero(traffic.placed)
     assert len(everyone) == placed
-    before = [array.copy() for array in (traffic.table, traffic.until, traffic.since)]
+    before = [array.copy() for array in (traffic.reserved.table, traffic.reserved.until, traffic.reserved.since)]
     some = np.array(sorted(data.draw(st.sets(st.sampled_from(everyone.tolist()), min_size=1))))
     traffic.remove(some)
     assert not traffic.placed[some].any() and traffic.placed.sum() == placed - len(some)
     traffic.place(some)
-    for array, old in zip((traffic.table, traffic.until, traffic.since), before, strict=True):
+    for array, old in zip(
+        (traffic.reserved.table, traffic.reserved.until, traffic.reserved.since), before, strict=True
+    ):
         assert np.array_equal(array, old)
     traffic.remove(everyone)
-    assert is_empty(traffic)
+    assert is_empty(traffic.reserved)
 
 
 def test_a_closed_team_keeps_its_paths_and_leaves_nothing_behind() -> None:
@@ -48,11 +46,11 @@ def test_a_closed_team_keeps_its_paths_and_leaves_nothing_behind() -> None:
     assert traffic.plan(np.array([0, 1])) == 2
     cells, cost = [path.copy() for path in traffic.cells()], traffic.cost()
     traffic.close()
-    assert is_empty(traffic) and traffic.cost() == cost
+    assert is_empty(traffic.reserved) and traffic.cost() == cost
     for path, old in zip(traffic.cells(), cells, strict=True):
         assert np.array_equal(path, old)
     after = Traffic(traffic.graph, np.array([[0, 44], [8, 36]], np.int64))
-    assert after.table is traffic.table  # the room is lent again
+    assert after.reserved.table is traffic.reserved.table  # the room is lent again
 
 
 def test_cells_are_the_paths_up_to_the_goal() -> None:
@@ -73,7 +71,7 @@ def test_alone_everyone_takes_a_shortest_way_and_nobody_is_placed(problem: Probl
     traffic = traffic_of(problem)
     plan_alone(traffic)
     assert traffic.lengths.tolist() == traffic.alone.tolist()
-    assert not traffic.placed.any() and is_empty(traffic)
+    assert not traffic.placed.any() and is_empty(traffic.reserved)
     plan = plan_independent(traffic)
     assert plan.solved == bool((conflicts_of(traffic) < 0).all())
     assert plan.cost == plan.lower_bound == traffic.alone.sum()
