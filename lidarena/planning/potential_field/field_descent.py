@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import leaf
 from lidarena.base.random_streams import normal
 from lidarena.planning.potential_field.disc_clearance import segment_is_free
-from lidarena.planning.potential_field.field_kernels import Field, force_at
+from lidarena.planning.potential_field.field_kernels import Field, Obstacles, force_at
 
 ARRIVED, OUT_OF_STEPS, TRAPPED, COLLIDED, OUT_OF_FILLS = 0, 1, 2, 3, 4
 """How a walk ends."""
@@ -79,14 +79,14 @@ def _turned_aside(
     y: float,
     heading: float,
     gamma: float,
-    kept: NDArray[np.float64],
-    kept_walls: NDArray[np.float64],
+    kept: Obstacles,
     blocker: NDArray[np.int64],
 ) -> float:
     """The free heading nearest to the wanted one; NaN if there is none."""
     for i in range(_TURNS.shape[0]):
         turned = heading + _TURNS[i]
-        if segment_is_free(x, y, x + gamma * math.cos(turned), y + gamma * math.sin(turned), kept, kept_walls, blocker):
+        ahead, aside = x + gamma * math.cos(turned), y + gamma * math.sin(turned)
+        if segment_is_free(x, y, ahead, aside, kept.discs, kept.walls, blocker):
             return float(turned)
     return math.nan
 
@@ -95,10 +95,8 @@ def _turned_aside(
 def walk(
     path: NDArray[np.float64],
     goal: NDArray[np.float64],
-    discs: NDArray[np.float64],
-    walls: NDArray[np.float64],
-    kept: NDArray[np.float64],
-    kept_walls: NDArray[np.float64],
+    obstacles: Obstacles,
+    kept: Obstacles,
     field: Field,
     motion: Motion,
     fills: NDArray[np.float64],
@@ -110,10 +108,8 @@ def walk(
     Args:
         path: (N + 1, 2) its first row is the start; the others are written.
         goal: (2,) x, y (m).
-        discs: (K, 3) x, y, radius grown by the robot's (m).
-        walls: (4,) the room, drawn in by the robot's radius (m).
-        kept: (K, 3) the same discs grown by the clearance that a guarded walk keeps.
-        kept_walls: (4,) likewise.
+        obstacles: Discs and walls, grown by the robot's radius.
+        kept: The same, grown by the clearance that a guarded walk keeps.
         field: The potential.
         motion: How to walk.
         fills: (F, 3) room for x, y, s of the fills.
@@ -139,13 +135,14 @@ def walk(
             _fill(path, k, motion, noise, fills, count)
             count += 1
             since = k + int(motion.window)  # one window of rest
-        fx, fy = force_at(x, y, goal, discs, walls, field, fills, count)
+        fx, fy = force_at(x, y, goal, obstacles.discs, obstacles.walls, field, fills, count)
         heading = math.atan2(fy, fx)
         if motion.guarded != 0.0:
-            heading = _turned_aside(x, y, heading, motion.gamma, kept, kept_walls, blocker)
+            heading = _turned_aside(x, y, heading, motion.gamma, kept, blocker)
         boxed_in = math.isnan(heading)  # stays, which is a trap
         path[k + 1, 0] = x if boxed_in else x + motion.gamma * math.cos(heading)
         path[k + 1, 1] = y if boxed_in else y + motion.gamma * math.sin(heading)
-        if motion.guarded == 0.0 and not segment_is_free(x, y, path[k + 1, 0], path[k + 1, 1], discs, walls, blocker):
+        nx, ny = path[k + 1, 0], path[k + 1, 1]
+        if motion.guarded == 0.0 and not segment_is_free(x, y, nx, ny, obstacles.discs, obstacles.walls, blocker):
             return k + 1, count, COLLIDED
     return last, count, OUT_OF_STEPS

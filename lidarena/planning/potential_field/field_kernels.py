@@ -25,6 +25,15 @@ RECIPROCAL, SHIFTED, BUMP = 0.0, 1.0, 2.0
 """Shapes of a fill: eq. 15 as printed; the same less its value at the rim; a Gaussian."""
 
 
+class Obstacles(NamedTuple):
+    """What a robot must not touch."""
+
+    discs: NDArray[np.float64]
+    """(K, 3) x, y, radius [m]."""
+    walls: NDArray[np.float64]
+    """(4,) x_min, y_min, x_max, y_max of the room [m]; infinite: no walls."""
+
+
 class Field(NamedTuple):
     """The numbers of a field, all of them floats (one type for the compiler); lengths in metres."""
 
@@ -224,28 +233,28 @@ def force_at(
 def potentials(
     points: NDArray[np.float64],
     goal: NDArray[np.float64],
-    discs: NDArray[np.float64],
-    walls: NDArray[np.float64],
+    obstacles: Obstacles,
     field: Field,
     fills: NDArray[np.float64],
     values: NDArray[np.float64],
 ) -> None:
     """Write the potential at ``points`` (M, 2) into ``values`` (M,)."""
     for i in range(points.shape[0]):
-        values[i] = potential_at(points[i, 0], points[i, 1], goal, discs, walls, field, fills, fills.shape[0])
+        x, y = points[i, 0], points[i, 1]
+        values[i] = potential_at(x, y, goal, obstacles.discs, obstacles.walls, field, fills, fills.shape[0])
 
 
 @leaf
 def forces(
     points: NDArray[np.float64],
     goal: NDArray[np.float64],
-    discs: NDArray[np.float64],
-    walls: NDArray[np.float64],
+    obstacles: Obstacles,
     field: Field,
     fills: NDArray[np.float64],
     values: NDArray[np.float64],
 ) -> None:
     """Write the force at ``points`` (M, 2) into ``values`` (M, 2)."""
     for i in range(points.shape[0]):
-        fx, fy = force_at(points[i, 0], points[i, 1], goal, discs, walls, field, fills, fills.shape[0])
+        x, y = points[i, 0], points[i, 1]
+        fx, fy = force_at(x, y, goal, obstacles.discs, obstacles.walls, field, fills, fills.shape[0])
         values[i, 0], values[i, 1] = fx, fy

@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import MapError
+from lidarena.planning.potential_field.field_kernels import Obstacles
 
 _ROOM = 100.0
 """Side of Yang et al.'s room (m)."""
@@ -41,7 +42,7 @@ class FieldScene:
         away = np.hypot(self.discs[:, 0] - point[0], self.discs[:, 1] - point[1]) - self.discs[:, 2]
         return np.concatenate([away, point - self.walls[:2], self.walls[2:] - point])
 
-    def keeping(self, clearance: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    def keeping(self, clearance: float) -> Obstacles:
         """Return discs (K, 3) and walls (4,) grown by a clearance, each by less if start or goal is nearer to it.
 
         Args:
@@ -51,11 +52,16 @@ class FieldScene:
         kept = np.minimum(clearance, _SHARE * gaps)
         discs = self.discs.copy()
         discs[:, 2] += kept[:-4]
-        return discs, self.walls + kept[-4:] * np.array([1.0, 1.0, -1.0, -1.0])
+        return Obstacles(discs, self.walls + kept[-4:] * np.array([1.0, 1.0, -1.0, -1.0]))
 
-    def narrowed(self, discs: NDArray[np.float64], walls: NDArray[np.float64]) -> "FieldScene":
-        """Return the same scene with the discs and walls of :meth:`keeping` in place of its own."""
-        return FieldScene(discs, walls, self.start, self.goal)
+    @property
+    def obstacles(self) -> Obstacles:
+        """The discs and walls as kernels take them."""
+        return Obstacles(self.discs, self.walls)
+
+    def narrowed(self, obstacles: Obstacles) -> "FieldScene":
+        """Return the same scene with the obstacles of :meth:`keeping` in place of its own."""
+        return FieldScene(*obstacles, self.start, self.goal)
 
     @property
     def scale(self) -> float:

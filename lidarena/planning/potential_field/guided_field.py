@@ -16,7 +16,7 @@ from lidarena.base.jit import leaf
 from lidarena.planning.potential_field.circle_grid import shortest_grid_path
 from lidarena.planning.potential_field.disc_clearance import segment_is_free
 from lidarena.planning.potential_field.field_descent import ARRIVED, OUT_OF_STEPS
-from lidarena.planning.potential_field.field_kernels import Field, force_at
+from lidarena.planning.potential_field.field_kernels import Field, Obstacles, force_at
 from lidarena.planning.potential_field.field_parameters import field_parameters
 from lidarena.planning.potential_field.field_scene import make_scene
 from lidarena.planning.potential_field.potential_field import PathResult
@@ -38,13 +38,12 @@ def _lookahead_point(
     route: NDArray[np.float64],
     first: int,
     reach: int,
-    kept: NDArray[np.float64],
-    walls: NDArray[np.float64],
+    kept: Obstacles,
     blocker: NDArray[np.int64],
 ) -> int:
     """The last point of ``route`` (R, 2) from ``first`` on, at most ``reach`` further, that is in sight; -1: none."""
     for i in range(min(first + reach, route.shape[0] - 1), first - 1, -1):
-        if segment_is_free(x, y, route[i, 0], route[i, 1], kept, walls, blocker):
+        if segment_is_free(x, y, route[i, 0], route[i, 1], kept.discs, kept.walls, blocker):
             return i
     return -1
 
@@ -61,10 +60,8 @@ def follow(
     path: NDArray[np.float64],
     route: NDArray[np.float64],
     reach: int,
-    discs: NDArray[np.float64],
-    walls: NDArray[np.float64],
-    kept: NDArray[np.float64],
-    kept_walls: NDArray[np.float64],
+    obstacles: Obstacles,
+    kept: Obstacles,
     field: Field,
     gamma: float,
     target: NDArray[np.float64],
@@ -76,13 +73,11 @@ def follow(
         path: (N + 1, 2) its first row is the start; the others are written.
         route: (R, 2) points to be led by, close together.
         reach: How many of them the lookahead point is ahead at most.
-        discs: (K, 3) x, y, radius of the obstacles, which repel (m).
-        walls: (4,) the room (m).
-        kept: (K, 3) the same discs grown by the clearance that the walk keeps.
-        kept_walls: (4,) likewise.
+        obstacles: Discs and walls, which repel.
+        kept: The same, grown by the clearance that the walk keeps.
         field: The potential.
         gamma: Length of a step (m).
-        target: (2,) scratch for the lookahead_point.
+        target: (2,) scratch for the lookahead point.
         blocker: (1,) scratch, 0.
 
     Returns:
@@ -95,17 +90,17 @@ def follow(
         x, y = path[k, 0], path[k, 1]
         if math.hypot(x - route[end, 0], y - route[end, 1]) <= gamma:
             return k, ARRIVED
-        found = _lookahead_point(x, y, route, ahead, reach, kept, kept_walls, blocker)
+        found = _lookahead_point(x, y, route, ahead, reach, kept, blocker)
         ahead = max(ahead, found)
         target[0], target[1] = route[ahead, 0], route[ahead, 1]
         if k >= _WINDOW and math.hypot(x - path[k - _WINDOW, 0], y - path[k - _WINDOW, 1]) < 0.25 * _WINDOW * gamma:
             straight = _WINDOW
         step = gamma
-        fx, fy = force_at(x, y, target, discs, walls, field, route, 0)
+        fx, fy = force_at(x, y, target, obstacles.discs, obstacles.walls, field, route, 0)
         turned = _limited(heading, math.atan2(fy, fx), _TURN)
         nx, ny = x + gamma * math.cos(turned), y + gamma * math.sin(turned)
-        lost = straight > 0 or not segment_is_free(x, y, nx, ny, kept, kept_walls, blocker)
-        if lost or _lookahead_point(nx, ny, route, ahead, reach, kept, kept_walls, blocker) < 0:
+        lost = straight > 0 or not segment_is_free(x, y, nx, ny, kept.discs, kept.walls, blocker)
+        if lost or _lookahead_point(nx, ny, route, ahead, reach, kept, blocker) < 0:
             turned = math.atan2(target[1] - y, target[0] - x)
             step = min(gamma, math.hypot(target[0] - x, target[1] - y))
             nx, ny = x + step * math.cos(turned), y + step * math.sin(turned)
@@ -153,24 +148,24 @@ def plan_guided_path(
     none = np.empty((0, 3))
     for share in _CLEARANCES:
         tried = parameters.tightened(share)
-        kept, kept_walls = scene.keeping(tried.h_0)
-        narrowed = scene.narrowed(kept, kept_walls)
+        kept = scene.keeping(tried.h_0)
+        narrowed = scene.narrowed(kept)
         route = shortest_grid_path(narrowed, tried.h_0, 2.0)
         if len(route):
             break
     else:
         alone = scene.start[None].copy()
         return PathResult(False, False, alone, alone.copy(), 0, "A* finds no path on its grid", none, parameters)
-    route = shortened(regression_search(route, kept, kept_walls), kept, kept_walls)
+    route = shortened(regression_search(route, *kept), *kept)
     points = _spaced(route, tried.gamma)
     steps = min(parameters.max_steps, 4 * len(points) + 1000)
     path = np.empty((steps + 1, 2))
     path[0] = scene.start
-    arguments = (scene.discs, scene.walls, kept, kept_walls, tried.field(), float(tried.gamma))
+    arguments = (scene.obstacles, kept, tried.field(), float(tried.gamma))
     reach = np.int64(_AHEAD * tried.h_0 / tried.gamma)
     last, end = follow(path, points, reach, *arguments, np.empty(2), np.zeros(1, np.int64))
     path = np.vstack([path[: last + 1], scene.goal]) if end == ARRIVED else path[: last + 1].copy()
-    smoothed = shortened(regression_search(path, kept, kept_walls), kept, kept_walls) if end == ARRIVED else path.copy()
+    smoothed = shortened(regression_search(path, *kept), *kept) if end == ARRIVED else path.copy()
     way = f"the goal was reached in {last} steps along A*'s path of {path_length(route):.4g} m"
     message = way if end == ARRIVED else f"the goal was not reached within {steps} steps (the limit)"
     return PathResult(end == ARRIVED, False, path, smoothed, 0, message, none, tried)

@@ -119,7 +119,7 @@ class PotentialField:
 
     def _arguments(self) -> tuple[Any, ...]:
         scene = self.scene
-        return scene.goal, scene.discs, scene.walls, self.parameters.field(), self.filled
+        return scene.goal, scene.obstacles, self.parameters.field(), self.filled
 
 
 def plan_path(
@@ -199,35 +199,33 @@ def _other_side(
     scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64], best: PathResult
 ) -> PathResult:
     """Walk by the mirror image of the farthest corner of the best path so far, and so on an obstacle's other side."""
-    kept, kept_walls = scene.keeping(parameters.h_0)
+    kept = scene.keeping(parameters.h_0)
     ahead = (scene.goal - scene.start) / max(float(np.hypot(*(scene.goal - scene.start))), NEAREST)
     aside = (best.smoothed - scene.start) @ np.array([-ahead[1], ahead[0]])
     corner = int(np.argmax(np.abs(aside)))
     via = best.smoothed[corner] - 2.0 * aside[corner] * np.array([-ahead[1], ahead[0]])
-    if not best.success or not segment_is_free(*via, *via, kept, kept_walls, np.zeros(1, np.int64)):
+    if not best.success or not segment_is_free(*via, *via, *kept, np.zeros(1, np.int64)):
         return best
     there = _attempt(replace(scene, goal=via), parameters, noise)
     if not there.success:
         return there
     on = _attempt(replace(scene, start=via), parameters, noise)
     path = np.vstack([there.path, on.path[1:]])
-    smoothed = regression_search(path, kept, kept_walls) if parameters.regression else path
+    smoothed = regression_search(path, *kept) if parameters.regression else path
     return on._replace(path=path, smoothed=smoothed, fills=there.fills + on.fills)
 
 
 def _attempt(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.uint64]) -> PathResult:
     """One walk and its regression search."""
-    kept, kept_walls = scene.keeping(parameters.h_0)
+    kept = scene.keeping(parameters.h_0)
     path = np.empty((parameters.max_steps + 1, 2))
     path[0] = scene.start
     filled = np.empty((parameters.max_fills, 3))
     last, fills, end = walk(
         path,
         scene.goal,
-        scene.discs,
-        scene.walls,
+        scene.obstacles,
         kept,
-        kept_walls,
         parameters.field(),
         parameters.motion(),
         filled,
@@ -239,7 +237,7 @@ def _attempt(scene: FieldScene, parameters: FieldParameters, noise: NDArray[np.u
         steps = np.vstack([steps, scene.goal])
     smoothed = steps.copy()
     if end == ARRIVED and parameters.regression:
-        smoothed = regression_search(steps, kept, kept_walls)
+        smoothed = regression_search(steps, *kept)
     message = _message(end, last, fills, parameters)
     return PathResult(end == ARRIVED, end == COLLIDED, steps, smoothed, fills, message, taken, parameters)
 

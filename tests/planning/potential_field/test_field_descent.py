@@ -20,7 +20,7 @@ def run(circles, start, goal, preset="paper", **overrides):
     path[0] = start
     kept = scene.keeping(p.h_0)
     noise = seed_stream(np.random.default_rng(p.seed))
-    arguments = (path, scene.goal, scene.discs, scene.walls, *kept, p.field(), p.motion(), fills)
+    arguments = (path, scene.goal, scene.obstacles, kept, p.field(), p.motion(), fills)
     last, count, end = walk(*arguments, np.zeros(1, np.int64), noise)
     return path[: last + 1], fills[:count], ENDS[end]
 

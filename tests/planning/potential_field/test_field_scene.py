@@ -59,7 +59,7 @@ def test_a_clearance_is_kept_from_all_but_what_start_or_goal_is_nearer_to(
 @given(SEED, ROBOT, st.floats(0.0, 12.0))
 def test_start_and_goal_stay_free_whatever_is_kept(seed: int, robot: float, clearance: float) -> None:
     scene = scenes(seed, robot, True)
-    kept = scene.narrowed(*scene.keeping(clearance))
+    kept = scene.narrowed(scene.keeping(clearance))
     for point in (kept.start, kept.goal):
         assert segment_is_free(*point, *point, kept.discs, kept.walls, np.zeros(1, np.int64))
     np.testing.assert_array_equal(kept.start, scene.start)
