@@ -5,12 +5,12 @@ command until it makes a difference (some 0.1 m or 0.18 rad); states fall into b
 the time, dearer where obstacles are near. Turning costs its true time, so a robot that turns slowly is sent straight.
 
 A sequence must end where the robot could *loiter*: turn a full circle, left or right, without touching anything. So
-whoever follows a sequence to its end, and finds no further one, is still safe. For DA-SLAM's robot, which turns on an
-arc of 0.167 m, this is what forbids driving up to a wall: facing it at 0.28 m, no command avoids it any more.
+a robot that has followed a sequence to its end, and finds no further one, is still safe. For DA-SLAM's robot, which
+turns on an arc of 0.167 m, this is what forbids driving up to a wall: facing it at 0.28 m, no command avoids it.
 """
 
 import math
-from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -25,8 +25,7 @@ _TURN_EDGE, _DRIVE_EDGE = 0.18, 0.1  # what one edge of the search turns (rad) o
 _TWO_PI = 2.0 * math.pi
 
 
-@dataclass(frozen=True)
-class Commands:
+class Commands(NamedTuple):
     """A robot's commands; row k of every array belongs to command k.
 
     Attributes:
@@ -207,65 +206,56 @@ def search_commands(
     frame: NDArray[np.float64],
     start: NDArray[np.float64],
     target: NDArray[np.float64],
-    velocities: NDArray[np.float64],
-    moves: NDArray[np.float64],
-    repeats: NDArray[np.int64],
-    period: float,
+    commands: Commands,
     margins: NDArray[np.float64],
     limits: NDArray[np.float64],
 ) -> NDArray[np.int64]:
     """Return the quickest commands to a target nearby, (n,) indices, (0,) if there are none; see :func:`steer`.
 
     Args:
-        gap: (rows, cols) clearance of the cells (m); ``closed`` those that are forbidden.
-        closed: (rows, cols).
+        gap: (rows, cols) clearance of the cells (m).
+        closed: (rows, cols) cells that are forbidden.
         frame: (3,) x, y of the origin, side of a cell.
         start: (3,) x, y, theta.
         target: (2,) x, y.
-        velocities: (k, 2) v, w of each command.
-        moves: (k, 3) what each command does.
-        repeats: (k,) how often an edge repeats it.
-        period: Seconds a command lasts.
+        commands: What the robot can do.
         margins: (3,) least clearance, preferred clearance (m), weight of the lack of it.
         limits: (3,) distance to the target that counts as there (m), half the side of the square that is searched (m),
             states that are looked at, at most.
     """
+    velocities, moves = commands.velocities, commands.moves
     reach, side, most = limits[0], 2 * int(limits[1] / _BIN) + 1, int(limits[2])
     headings = math.ceil(_TWO_PI / max(_TURN_EDGE, np.abs(moves[:, 2]).max()) - 1e-6)
     table = np.full(side * side * headings, -1, np.int32)
-    poses, spent, keys = np.empty((most, 3)), np.zeros(most), np.empty(most)
+    poses, spent, done, here = np.empty((most, 3)), np.zeros(most), np.zeros(most, np.bool_), np.empty(3)
     before = np.full((most, 2), -1, np.int64)
-    heap, where = np.empty(most, np.int64), np.full(most, -1, np.int64)
-    done, here = np.zeros(most, np.bool_), np.empty(3)
+    heap, where, keys = np.empty(most, np.int64), np.full(most, -1, np.int64), np.empty(most)
     poses[0] = start
     keys[0] = _ahead(start, target, reach, velocities)
     table[_bin(start, start, side, headings)] = 0
     count, size = 1, push(heap, where, keys, 0, 0)
     while size > 0:
-        node = pop(heap, where, keys, size)
-        size -= 1
+        node, size = pop(heap, where, keys, size), size - 1
         done[node] = True
         near = math.hypot(poses[node, 0] - target[0], poses[node, 1] - target[1]) <= reach
         if near and node > 0 and _can_loiter(gap, closed, frame, poses[node], velocities, margins[0]):
-            return _unroll(before, repeats, node)
+            return _unroll(before, commands.repeats, node)
         for k in range(moves.shape[0]):
             here[:] = poses[node]
-            cost = _drive_edge(gap, closed, frame, here, moves[k], repeats[k], margins)
+            cost = _drive_edge(gap, closed, frame, here, moves[k], commands.repeats[k], margins)
             slot = _bin(here, start, side, headings)
             if cost == np.inf or slot < 0:
                 continue
-            cost = spent[node] + cost * period
+            cost = spent[node] + cost * commands.period
             other = table[slot]
             if other < 0:
                 if count == most:
                     return np.empty(0, np.int64)
-                other = count
+                other, count = count, count + 1
                 table[slot] = other
-                count += 1
             elif done[other] or spent[other] <= cost:
                 continue
-            poses[other] = here
-            spent[other] = cost
+            poses[other], spent[other] = here, cost
             before[other, 0], before[other, 1] = node, k
             keys[other] = cost + _ahead(here, target, reach, velocities)
             size = push(heap, where, keys, size, other)
@@ -328,10 +318,7 @@ def steer(
         frame,
         at,
         np.asarray(target, np.float64),
-        commands.velocities,
-        commands.moves,
-        commands.repeats,
-        commands.period,
+        commands,
         margins,
         np.array([reach, window, float(most_states)]),
     )

@@ -51,8 +51,7 @@ def _search(  # noqa: C901 - the loop of a search
     before = np.zeros(3 * places * places, np.int32)
     keys, items = np.empty(open_room, np.int64), np.empty(open_room, np.int32)
     start = (ends[0, 0] * places + ends[1, 0]) * 3
-    spent[start] = 1
-    before[start] = -1
+    spent[start], before[start] = 1, -1
     size = push(keys, items, np.int64(0), np.int64(0), start)
     expanded = 0
     while size > 0:

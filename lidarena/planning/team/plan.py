@@ -20,6 +20,10 @@ from lidarena.planning.team.team_plan import TeamPlan
 from lidarena.planning.team.traffic import Traffic
 
 Method = Literal["independent_astar", "prioritized_astar", "coordination", "joint_astar", "prioritized_search", "cbs"]
+"""``independent_astar`` ignores the other robots (solved only if that happens to be free of conflicts).
+``prioritized_astar`` is Bennewitz & Burgard's planner. ``coordination`` keeps to the independent paths. ``joint_astar``
+is the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan until
+it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says that it could not."""
 MAX_CELL_COST = 64.0
 
 
@@ -44,17 +48,11 @@ def plan_team(
     cells traversed plus steps waited. Robots conflict if at any time of a step their centres are closer than two radii,
     or meet; one at its goal stays there and blocks.
 
-    ``independent_astar`` ignores the others (solved only if that happens to be free of conflicts).
-    ``prioritized_astar`` is Bennewitz & Burgard's planner. ``coordination`` keeps to the independent paths.
-    ``joint_astar`` is the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and
-    repairs the plan until it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says
-    that it could not.
-
     Args:
         grid: (rows, cols) bool, True = blocked.
         starts: (k, 2) int [row, column].
         goals: (k, 2) int [row, column].
-        method: See above.
+        method: See ``Method``.
         connectivity: 4 or 8 neighbours.
         radius: Of every robot, in cells; 0 = points.
         time_limit: Seconds that ``prioritized_search`` and ``cbs`` may take (``joint_astar``: a million states each).
