@@ -12,10 +12,10 @@ from numpy.typing import NDArray
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_env import SingleWorld
 from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
+from lidarena.envs.corridor.drawing import draw_world
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
-from lidarena.envs.corridor.window import close_window, draw_world
 from lidarena.envs.episodes import Outcome
 from lidarena.envs.infos import Info
 from lidarena.world.floorplan import Floorplan
@@ -89,7 +89,7 @@ class CentralEpisodes:
 
     def close(self) -> None:
         """Close the window, if there is one."""
-        close_window(self.teams)
+        self.teams.window.close()
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""

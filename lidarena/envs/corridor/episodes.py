@@ -18,6 +18,7 @@ from lidarena.envs.corridor.state import CorridorCore
 from lidarena.envs.infos import Info, of_world
 from lidarena.envs.observers import OneByOne, choose_observer
 from lidarena.envs.rewards import StepRewards, choose_reward
+from lidarena.envs.window import Window
 
 _EXTRA = 8
 """Numbers of an observation besides the beams."""
@@ -42,6 +43,7 @@ class CorridorEpisodes:
         steps: (worlds,) decisions so far.
         trails: For the picture, None unless the worlds are drawn.
         sketches: What a planner wants to be seen in each world's picture.
+        window: Shows the picture with ``render_mode="human"``.
     """
 
     def __init__(self, worlds: int, options: CorridorOptions) -> None:
@@ -55,7 +57,7 @@ class CorridorEpisodes:
             self.observation_space = observer.space
         self.action_space: gym.Space[Any] = action_space(options.action, options.robot)
         self.trails = TrailRecorder(worlds) if options.render_mode is not None else None
-        self.sketches = [TeamSketch() for _ in range(worlds)]
+        self.sketches, self.window = [TeamSketch() for _ in range(worlds)], Window()
         shape = (worlds, options.robots)
         self.finished, self.arrived = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
         self.touches, self.steps = np.zeros(shape, np.int64), np.zeros(worlds, np.int64)

@@ -21,10 +21,10 @@ from lidarena.base.errors import ActionError, ConfigError, suggest
 from lidarena.base.generator_state import generator_from_words, generator_words
 from lidarena.base.keyword_checks import check_names, check_step_limit, takes_keywords_of
 from lidarena.envs.action_bounds import within_bounds
+from lidarena.envs.corridor.drawing import draw_world
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions, modern_keywords
 from lidarena.envs.corridor.rendering import TeamSketch
-from lidarena.envs.corridor.window import close_window, draw_world
 from lidarena.envs.infos import Info, of_world
 from lidarena.world.floorplan import Floorplan
 
@@ -307,7 +307,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
 
     def close(self) -> None:
         """Close the window, if there is one."""
-        close_window(self.episodes)
+        self.episodes.window.close()
 
     def state(self) -> NDArray[np.float32]:
         """What all robots see, (robots, beams + 8)."""
