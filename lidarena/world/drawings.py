@@ -1,7 +1,7 @@
 """The four circuits of DA-SLAM (Alcalde et al. 2022), drawn once.
 
-Yang et al. (Alcalde et al., "DA-SLAM") prints outer sizes and one sentence on each; its pictures are not public. These
-drawings keep the sizes and the sentences. All have their lower-left outer corner at (0, 0), walls 0.1 m thick whose
+Alcalde et al. print outer sizes and one sentence on each; their pictures are not public. These drawings keep the sizes
+and the sentences. All have their lower-left outer corner at (0, 0), walls 0.1 m thick whose
 outer faces lie on the stated size, and at least 0.8 m of clear width everywhere.
 """
 

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lidarena.envs.arena.actions import heading_space, turns_of
 from lidarena.envs.arena.kernels import observe
 from lidarena.envs.arena.options import OBSERVATIONS, ArenaOptions
-from lidarena.envs.arena.rendering import PathRecorder, draw_arena
+from lidarena.envs.arena.rendering import ArenaRecorder, draw_arena
 from lidarena.envs.arena.rewards import REWARDS, weigh_terms
 from lidarena.envs.arena.state import ArenaCore
 from lidarena.envs.compilation import announced_compilation
@@ -47,7 +47,7 @@ class ArenaEpisodes:
         self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds,))
         if not isinstance(observer, str):
             self.single_observation_space = observer.space
-        self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
+        self.recorder = ArenaRecorder(worlds) if options.render_mode is not None else None
         self._rewards = StepRewards(choose_reward(options.reward, REWARDS), (worlds,), self._snapshot)
         self._steps = np.zeros(worlds, np.int64)
         self._success = np.zeros(worlds, np.bool_)
@@ -95,7 +95,7 @@ class ArenaEpisodes:
         weighed = weigh_terms(core, self._rewards.chosen.weights, before, self._success)
         rewards = self._rewards.add_up(weighed, actions)
         if self.recorder is not None:
-            self.recorder.record(core)
+            self.recorder.driven.record(core.physics.poses)
         truncated = np.zeros(core.worlds, np.bool_)
         if self.options.max_episode_steps != -1:
             truncated |= self._steps >= self.options.max_episode_steps

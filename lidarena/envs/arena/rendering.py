@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.arena.potential_grid import PotentialGrid, survey
+from lidarena.envs.path_recorder import PathRecorder
 from lidarena.world.canvas import BLUE, GREEN, INK, MAGENTA, ORANGE, RED, WHITE, Canvas, Colour, write
 
 if TYPE_CHECKING:
@@ -22,36 +23,26 @@ _ARROWS = 26
 _OBSTACLE = (238, 238, 240)
 
 
-class PathRecorder:
-    """Remembers what the picture draws: where the robots drove, their plans, and the landscapes of their arenas.
+class ArenaRecorder:
+    """Remembers what the picture draws: where the robots drove, their plans, and the potentials of their arenas.
 
     Args:
         worlds: Number of worlds.
+
+    Attributes:
+        driven: The robots' paths.
     """
 
     def __init__(self, worlds: int) -> None:
-        self._paths: list[list[NDArray[np.float64]]] = [[] for _ in range(worlds)]
+        self.driven = PathRecorder(worlds)
         self._potential_grids: list[PotentialGrid | None] = [None] * worlds
         self._plans: list[tuple[NDArray[np.float64], NDArray[np.float64] | None] | None] = [None] * worlds
 
     def begin(self, world: int, core: "ArenaCore") -> None:
         """Start one world's path anew."""
-        self._paths[world] = [core.physics.poses[world, 0, :2].copy()]
+        self.driven.begin(world, core.physics.poses[world])
         self._potential_grids[world] = None
         self._plans[world] = None
-
-    def begun(self, world: int) -> bool:
-        """Whether a world has an episode to draw."""
-        return bool(self._paths[world])
-
-    def record(self, core: "ArenaCore") -> None:
-        """Append where every world's robot is now."""
-        for world, path in enumerate(self._paths):
-            path.append(core.physics.poses[world, 0, :2].copy())
-
-    def path(self, world: int) -> NDArray[np.float64]:
-        """(steps, 2) positions [m]."""
-        return np.array(self._paths[world])
 
     def show(self, world: int, plan: NDArray[np.float64], before: NDArray[np.float64] | None) -> None:
         """Draw a policy's plan, and what it was before it was smoothed, instead of the field's."""
@@ -62,7 +53,7 @@ class PathRecorder:
         return self._plans[world] or (land.plan.smoothed, land.plan.path)
 
     def potential_grid(self, world: int, core: "ArenaCore") -> PotentialGrid:
-        """The potential_grid of a world's arena, surveyed when it is first asked for."""
+        """The potential of a world's arena, surveyed when it is first asked for."""
         found = self._potential_grids[world]
         if found is None:
             scenario = core.scenarios[world]
@@ -71,7 +62,7 @@ class PathRecorder:
         return found
 
 
-def draw_arena(core: "ArenaCore", recorder: PathRecorder, world: int) -> NDArray[np.uint8]:
+def draw_arena(core: "ArenaCore", recorder: ArenaRecorder, world: int) -> NDArray[np.uint8]:
     """Draw one world, RGB (height, width, 3)."""
     scenario = core.scenarios[world]
     assert scenario is not None
@@ -91,7 +82,7 @@ def draw_arena(core: "ArenaCore", recorder: PathRecorder, world: int) -> NDArray
         canvas.line(before, ORANGE, 2)
         _draw_forces(canvas, land, before)
     canvas.line(plan, BLUE, 2)
-    canvas.line(recorder.path(world), GREEN, 3)
+    canvas.line(recorder.driven.paths(world)[0], GREEN, 3)
     _draw_scan(canvas, core, world)
     _draw_places(canvas, land, np.array(arena.goal))
     canvas.robot(core.physics.poses[world, 0], float(core.radii[world]), GREEN)

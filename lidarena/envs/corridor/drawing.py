@@ -32,7 +32,7 @@ def draw_world(episodes: CorridorEpisodes, world: int) -> NDArray[np.uint8] | No
         core.robot.radius,
         float(episodes.time[world]),
     )
-    picture = draw_team(scene, trails.trails(world), episodes.sketches[world])
+    picture = draw_team(scene, trails.paths(world), episodes.sketches[world])
     if episodes.options.render_mode == "rgb_array":
         return picture
     episodes.window.show(picture)

@@ -12,11 +12,12 @@ from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.corridor.actions import action_space, commands_of
 from lidarena.envs.corridor.kernels import write_observations
 from lidarena.envs.corridor.options import OBSERVATIONS, CorridorOptions
-from lidarena.envs.corridor.rendering import TeamSketch, TrailRecorder
+from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.corridor.rewards import REWARDS, weigh_terms
 from lidarena.envs.corridor.state import CorridorCore
 from lidarena.envs.infos import Info, of_world
 from lidarena.envs.observers import OneByOne, choose_observer
+from lidarena.envs.path_recorder import PathRecorder
 from lidarena.envs.rewards import StepRewards, choose_reward
 from lidarena.envs.window import Window
 
@@ -56,7 +57,7 @@ class CorridorEpisodes:
             assert isinstance(observer.space, gym.spaces.Box)
             self.observation_space = observer.space
         self.action_space: gym.Space[Any] = action_space(options.action, options.robot)
-        self.trails = TrailRecorder(worlds) if options.render_mode is not None else None
+        self.trails = PathRecorder(worlds) if options.render_mode is not None else None
         self.sketches, self.window = [TeamSketch() for _ in range(worlds)], Window()
         shape = (worlds, options.robots)
         self.finished, self.arrived = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)

@@ -34,34 +34,6 @@ class TeamSketch:
     note: str = ""
 
 
-class TrailRecorder:
-    """Remembers where robots have been.
-
-    Args:
-        worlds: Number of worlds.
-    """
-
-    def __init__(self, worlds: int) -> None:
-        self._trails: list[list[NDArray[np.float64]]] = [[] for _ in range(worlds)]
-
-    def begin(self, world: int, poses: NDArray[np.float64]) -> None:
-        """Start one world's trails anew at poses (robots, 3)."""
-        self._trails[world] = [poses[:, :2].copy()]
-
-    def begun(self, world: int) -> bool:
-        """Whether a world has an episode to draw."""
-        return bool(self._trails[world])
-
-    def record(self, poses: NDArray[np.float64]) -> None:
-        """Append where everybody is now, (worlds, robots, 3)."""
-        for trail, places in zip(self._trails, poses, strict=True):
-            trail.append(places[:, :2].copy())
-
-    def trails(self, world: int) -> NDArray[np.float64]:
-        """(steps, robots, 2) [m]."""
-        return np.stack(self._trails[world])
-
-
 @dataclass(frozen=True)
 class TeamScene:
     """One world at one moment; arrays over its robots.
@@ -93,7 +65,7 @@ def draw_team(scene: TeamScene, trails: NDArray[np.float64], sketch: TeamSketch)
     draw_floorplan(canvas, scene.plan)
     robots = range(len(scene.poses))
     for robot in robots:
-        canvas.line(trails[:, robot], _pale(_colour(robot)), 2)
+        canvas.line(trails[robot], _pale(_colour(robot)), 2)
     for robot, curve in sketch.curves.items():
         canvas.dots(_evenly(curve, 0.2), _colour(robot), 1.6)
     for robot in robots:

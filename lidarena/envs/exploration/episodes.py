@@ -13,11 +13,12 @@ from lidarena.envs.compilation import announced_compilation
 from lidarena.envs.exploration.actions import action_space, commands_of
 from lidarena.envs.exploration.observations import ENTROPY, check_entropy, make_observer
 from lidarena.envs.exploration.options import OBSERVATIONS, ExplorationOptions
-from lidarena.envs.exploration.rendering import PathRecorder, draw_exploration
+from lidarena.envs.exploration.rendering import draw_exploration, path_points
 from lidarena.envs.exploration.rewards import REWARDS, ExplorationTerms
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
 from lidarena.envs.infos import Info, of_world
 from lidarena.envs.observers import OneByOne, choose_observer
+from lidarena.envs.path_recorder import PathRecorder
 from lidarena.envs.rewards import StepRewards, choose_reward
 
 _GAIN = 0.001
@@ -75,7 +76,7 @@ class ExplorationEpisodes:
                 self._gained[world] = 0.0
                 self._previous[world] = 0.0
                 if self.recorder is not None:
-                    self.recorder.begin(world, self.core)
+                    self.recorder.begin(world, path_points(self.core)[world])
                 self._terms.begin(world)
                 self._rewards.begin(world)
         self._completeness = self.core.completeness
@@ -98,7 +99,7 @@ class ExplorationEpisodes:
         terminated = self.core.sensors.collision.copy()
         terminated |= self._explored()
         if self.recorder is not None:
-            self.recorder.record(self.core)
+            self.recorder.record(path_points(self.core))
         return rewards, terminated, self._truncated()
 
     def _explored(self) -> NDArray[np.bool_]:

@@ -4,6 +4,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
+from lidarena.envs.path_recorder import PathRecorder
 from lidarena.world.canvas import (
     BLUE,
     GREEN,
@@ -27,37 +28,9 @@ _UNKNOWN = (205, 208, 214)
 _WALL = (30, 30, 36)
 
 
-class PathRecorder:
-    """Remembers the paths that the picture draws: true, estimated and dead-reckoned positions.
-
-    Args:
-        worlds: Number of worlds.
-    """
-
-    def __init__(self, worlds: int) -> None:
-        self._paths: list[list[NDArray[np.float64]]] = [[] for _ in range(worlds)]
-
-    def begin(self, world: int, core: ExplorationCore) -> None:
-        """Start one world's paths anew."""
-        self._paths[world] = [_positions(core, world)]
-
-    def begun(self, world: int) -> bool:
-        """Whether a world has an episode to draw."""
-        return bool(self._paths[world])
-
-    def record(self, core: ExplorationCore) -> None:
-        """Append where every world's robot is now."""
-        for world, path in enumerate(self._paths):
-            path.append(_positions(core, world))
-
-    def paths(self, world: int) -> NDArray[np.float64]:
-        """(3, steps, 2): true, estimated, dead-reckoned [m]."""
-        return np.stack(self._paths[world], axis=1)
-
-
-def _positions(core: ExplorationCore, world: int) -> NDArray[np.float64]:
-    poses = (core.physics.poses[world, 0], core.estimate[world], core.sensors.dead_reckoning[world, 0])
-    return np.array([pose[:2] for pose in poses])
+def path_points(core: ExplorationCore) -> NDArray[np.float64]:
+    """(worlds, 3, 2) where every robot is, believes to be, and is by its wheels alone [m]."""
+    return np.stack([core.physics.poses[:, 0, :2], core.estimate[:, :2], core.sensors.dead_reckoning[:, 0, :2]], axis=1)
 
 
 def draw_exploration(core: ExplorationCore, recorder: PathRecorder, world: int) -> NDArray[np.uint8]:

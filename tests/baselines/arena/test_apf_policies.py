@@ -10,45 +10,8 @@ import pytest
 import lidarena
 from lidarena.base.errors import ConfigError
 from lidarena.baselines.policy import Policy
-from lidarena.planning.potential_field.circle_grid import astar_path
-from lidarena.planning.potential_field.regression_search import path_length
-from lidarena.world.arenas import Arena
+from tests.baselines.arena.arena_drives import EMPTY, KNOWN, LIDAR, NO_WAY, drive, over_astar
 from tests.planning.potential_field.test_potential_field import BARN, needs_barn
-
-KNOWN = ("astar", "apf", "apf_improved", "apf_global")
-LIDAR = ("apf_lidar", "apf_improved_lidar")
-EMPTY = Arena("empty", np.empty((0, 3)), (10.0, 50.0), (90.0, 50.0), (0.0, 0.0, 100.0, 100.0), 1.0)
-RING = np.linspace(0.0, 2.0 * np.pi, 60, endpoint=False)
-WALLED_IN = np.column_stack([70 + 8 * np.cos(RING), 50 + 8 * np.sin(RING), np.full(60, 0.8)])
-NO_WAY = Arena("no way", WALLED_IN, (10.0, 50.0), (70.0, 50.0), (0.0, 0.0, 100.0, 100.0), 1.0)
-
-
-def drive(
-    policy: str, seed: int = 0, options: dict[str, Any] | None = None, **keywords: Any
-) -> tuple[str, dict[str, Any]]:
-    """Run an episode; how it ended, and the last info with the least clearance."""
-    env = gym.make("lidarena/Arena-v0", expose_truth=True, disable_env_checker=True, **keywords)
-    driver = lidarena.baselines.make(policy, env, **(options or {}))
-    observation, info = env.reset(seed=seed)
-    driver.reset(seed=0)
-    least, decisions = info["clearance"], 0
-    while True:
-        action = driver.act(observation, info)
-        decisions += 1
-        if getattr(driver, "finished", False):
-            return "finished", info | {"least": least, "decisions": decisions}
-        assert env.action_space.contains(action)
-        observation, _, terminated, truncated, info = env.step(action)
-        least = min(least, info["clearance"])
-        if terminated or truncated:
-            end = "success" if info["success"] else "collision" if info["collision"] else "out of time"
-            return end, info | {"least": least, "decisions": decisions}
-
-
-def over_astar(info: dict[str, Any], start: tuple[float, float]) -> float:
-    truth = info["truth"]
-    path = astar_path(truth["circles"], start, info["goal"], info["radius"], truth["bounds"])
-    return float((info["path_length"] + info["distance"]) / path_length(path))
 
 
 @pytest.mark.parametrize("policy", KNOWN + LIDAR)
@@ -68,20 +31,6 @@ def test_planners_arrive_where_the_paper_sets_traps(policy: str, arena: str) -> 
     assert end == "success"
     assert info["path_length"] + info["distance"] <= (1.12 if policy == "astar" else 1.05) * math.hypot(70, 70)
     assert info["least"] > (0.1 if policy == "astar" else 1.4)
-
-
-@pytest.mark.parametrize("arena", ["yang:arc", "yang:u"])
-@pytest.mark.parametrize("policy", ["apf", "apf_lidar"])
-def test_the_traditional_field_is_trapped_and_says_so(policy: str, arena: str) -> None:
-    end, info = drive(policy, arena=arena)
-    assert end == "finished"
-    assert np.hypot(*(info["pose"][:2] - 12.0)) < 7.0  # inside of the trap
-
-
-def test_the_traditional_field_stops_short_of_a_goal_beside_an_obstacle() -> None:
-    end, info = drive("apf", arena="gnron", goal_radius=0.01)
-    assert end == "finished" and info["distance"] < 1.0
-    assert drive("apf_improved", arena="gnron")[0] == "success"
 
 
 @pytest.mark.parametrize("policy", ["astar", "apf_improved", "apf_global", "apf_improved_lidar"])
@@ -121,25 +70,10 @@ def test_where_there_is_no_way_planners_stop_without_a_collision(policy: str) ->
     assert drive(policy, options=options, arena=NO_WAY)[0] == "finished"
 
 
-@pytest.mark.parametrize("policy", LIDAR)
-def test_lidar_policies_read_nothing_but_the_lidar(policy: str) -> None:
-    ends = [drive(policy, arena="random:4", knowledge=knowledge)[1]["path_length"] for knowledge in ("map", "lidar")]
-    assert ends[0] == ends[1]
-
-
 @pytest.mark.parametrize("policy", KNOWN)
 def test_planners_refuse_an_unknown_world(policy: str) -> None:
     with pytest.raises(ConfigError, match=f"'{policy}' plans with the obstacles known.*apf_improved_lidar"):
         drive(policy, arena="yang", knowledge="lidar")
-
-
-@pytest.mark.parametrize("policy", LIDAR)
-def test_noise_stops_no_lidar_policy(policy: str) -> None:
-    assert drive(policy, arena="random:0", density=0.08, lidar={"noise": 0.2})[0] in (
-        "success",
-        "collision",
-        "finished",
-    )
 
 
 @pytest.mark.parametrize("policy", KNOWN + LIDAR)

@@ -8,7 +8,7 @@ from matplotlib import pyplot
 from numpy.typing import NDArray
 
 from lidarena.envs import BatchedCorridor, corridor_v0
-from lidarena.envs.corridor.rendering import COLOURS, TeamScene, TeamSketch, TrailRecorder, draw_team
+from lidarena.envs.corridor.rendering import COLOURS, TeamScene, TeamSketch, draw_team
 from lidarena.world.canvas import ORANGE, RED
 from lidarena.world.load import load_floorplan
 
@@ -22,7 +22,7 @@ NOBODY = np.zeros(2, np.bool_)
 def picture(sketch: TeamSketch | None = None, trails: Any = None, **changes: Any) -> Image:
     values = {"poses": POSES, "goals": GOALS, "arrived": NOBODY, "crashed": NOBODY} | changes
     scene = TeamScene(PLAN, **values, radius=0.2, time=1.2)
-    return draw_team(scene, POSES[None, :, :2] if trails is None else trails, sketch or TeamSketch())
+    return draw_team(scene, POSES[:, None, :2] if trails is None else trails, sketch or TeamSketch())
 
 
 def near(image: Image, point: tuple[float, float], reach: float = 0.5) -> Image:
@@ -49,7 +49,7 @@ def test_robots_and_their_goals_have_one_colour_and_stand_where_they_are() -> No
 
 def test_trails_plans_and_crosses_are_drawn_along_their_points() -> None:
     bare, line = picture(), np.array([(3.0, 7.5), (8.0, 7.5)])
-    trails = np.stack([np.linspace((1.0, 7.5), (3.0, 7.5), 9), np.tile(POSES[1, :2], (9, 1))], axis=1)
+    trails = np.stack([np.linspace((1.0, 7.5), (3.0, 7.5), 9), np.tile(POSES[1, :2], (9, 1))], axis=0)
     trailed, planned = picture(trails=trails), picture(TeamSketch({0: line}))
     crossed = picture(TeamSketch({0: line}, np.array([(7.0, 7.5)])))
     assert (near(trailed, (1.7, 7.5), 0.2) != near(bare, (1.7, 7.5), 0.2)).any()
@@ -90,18 +90,6 @@ def test_every_map_has_room_for_its_words(name: str) -> None:
     assert image is not None and image.shape[1] >= 640
     words = np.argwhere((image[:28] < 128).all(axis=2))
     assert len(words) > 100 and words[:, 1].max() < image.shape[1] - 4
-
-
-def test_trails_are_kept_for_each_world_and_begin_with_an_episode() -> None:
-    recorder = TrailRecorder(2)
-    recorder.begin(0, POSES)
-    assert recorder.begun(0) and not recorder.begun(1)
-    moving = np.stack([POSES, POSES + 1.0])
-    recorder.record(moving)
-    moving += 5.0  # what was recorded does not change
-    assert recorder.trails(0).tolist() == [POSES[:, :2].tolist()] * 2
-    recorder.begin(0, POSES + 2.0)
-    assert recorder.trails(0).tolist() == [(POSES + 2.0)[:, :2].tolist()]
 
 
 def test_each_world_of_a_batch_has_its_own_picture() -> None:

@@ -2,14 +2,16 @@
 
 import heapq
 import itertools
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from hypothesis import strategies as st
 
 from lidarena.base.errors import TeamError
-from lidarena.planning import TeamPlan, plan_team
+from lidarena.planning import TeamPlan, plan_team, validate_plan
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.search_arrays import NEVER, Reservations
+from lidarena.planning.team.traffic import Traffic
 
 MOVES = [(0, 0), (0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)]
 
@@ -108,6 +110,24 @@ def brute_force(problem) -> float:  # noqa: C901 - all of it in one place, to be
                     best[following] = spent + price
                     heapq.heappush(queue, (spent + price, next(number), following))
     return float("inf")
+
+
+def faults(problem: Problem, found: TeamPlan) -> list[str]:
+    """What an independent validator finds wrong with a plan."""
+    return validate_plan(found, *problem)
+
+
+def traffic_of(problem: Problem, **options: Any) -> Traffic:
+    """The team of a problem on its graph, nobody placed."""
+    grid, starts, goals, connectivity, radius = problem
+    graph = GridGraph(grid, connectivity, radius)
+    ends = np.stack([graph.index[tuple(starts.T)], graph.index[tuple(goals.T)]], axis=1).astype(np.int64)
+    return Traffic(graph, ends, **options)
+
+
+def hall(*ends: tuple[int, int], rows: int = 5, cols: int = 9) -> Traffic:
+    """Robots between pairs of places of an empty grid."""
+    return Traffic(GridGraph(np.zeros((rows, cols), bool), 8, 0.0), np.array(ends, np.int64))
 
 
 def is_empty(reserved: Reservations) -> bool:

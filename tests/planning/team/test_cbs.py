@@ -10,8 +10,7 @@ from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.cbs import CbsResult, ConflictBasedSearch
 from lidarena.planning.team.prioritized import conflicts_of
 from lidarena.planning.team.traffic import Traffic
-from tests.planning.team.problems import Problem, brute_force, is_empty, problems
-from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
+from tests.planning.team.problems import Problem, brute_force, is_empty, problems, traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 TINY = problems(robots=st.just(2), sides=st.integers(2, 3))

@@ -7,8 +7,7 @@ from hypothesis import strategies as st
 
 from lidarena.planning.team.coordination import plan_coordination
 from lidarena.planning.team.prioritized import longest_first, plan_alone
-from tests.planning.team.problems import Problem, meet, parse, problems
-from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
+from tests.planning.team.problems import Problem, meet, parse, problems, traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 

@@ -4,33 +4,22 @@ import time
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from lidarena.base.errors import TeamError
 from lidarena.planning import plan_team, validate_plan
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.plan import _load_kernels
-from tests.planning.team.problems import Problem, brute_force, parse, plan, problems
+from tests.planning.team.problems import Problem, brute_force, faults, parse, plan, problems
 
 METHODS = ["prioritized_astar", "coordination", "prioritized_search", "cbs"]
 QUICK = {"time_limit": math.inf, "iterations": 30}
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
-CROSSING = """
-    @@.@@
-    @.b.@
-    aA.B.
-    @...@
-    @@.@@
-"""
 PASSING = """
     @@@.@@@@
     aB....bA
 """
-
-
-def faults(problem, found):
-    return validate_plan(found, *problem)
 
 
 @settings(max_examples=80, deadline=None, suppress_health_check=SLOW)
@@ -43,40 +32,6 @@ def test_a_plan_never_collides_and_costs_at_least_the_bound(problem, method):
     else:
         assert "obot" in found.message or "nodes" in found.message
         assert not found.optimal
-
-
-@settings(max_examples=40, deadline=None, suppress_health_check=SLOW)
-@given(problems(robots=st.just(2), sides=st.integers(2, 4)))
-def test_the_optimum_of_two_robots_is_that_of_brute_force(problem):
-    assume(len(problem.starts) == 2)
-    expected = brute_force(problem)
-    joint = plan(problem, "joint_astar")
-    certified = plan(problem, "cbs", time_limit=5.0, iterations=300)
-    assert joint.cost == expected
-    assert joint.solved == joint.optimal == (expected < math.inf)
-    if joint.solved:
-        assert faults(problem, joint) == []
-    if certified.optimal:
-        assert certified.cost == expected
-        assert faults(problem, certified) == []
-    assert certified.lower_bound <= expected
-
-
-@settings(max_examples=12, deadline=None, suppress_health_check=SLOW)
-@given(problems(robots=st.just(3), sides=st.integers(2, 3)))
-def test_the_certified_optimum_of_three_robots_is_that_of_brute_force(problem):
-    expected = brute_force(problem)
-    found = plan(problem, "cbs", time_limit=5.0, iterations=100)
-    assert found.lower_bound <= expected <= found.cost
-    if found.optimal:
-        assert found.cost == expected
-
-
-@pytest.mark.parametrize("connectivity", [4, 8])
-def test_certified_optimum_of_a_known_problem(connectivity):
-    problem = parse(CROSSING, connectivity)
-    found = plan(problem, "cbs")
-    assert (found.cost, found.optimal) == (brute_force(problem), True)
 
 
 @pytest.mark.parametrize("method", ["prioritized_search", "joint_astar", "cbs"])
@@ -132,12 +87,6 @@ def test_independent_paths_are_returned_with_their_first_conflict():
     found = plan(problem, "independent_astar")
     assert not found.solved and found.cost == 6 and [len(path) for path in found.paths] == [4, 4]
     assert "first robots 0 and 1 in step 1" in found.message
-
-
-def test_a_robot_at_its_goal_blocks_and_one_at_its_start_may_be_its_own_goal():
-    problem = Problem(np.zeros((3, 5), bool), np.array([(1, 0), (1, 2)]), np.array([(1, 4), (1, 2)]), 4)
-    found = plan(problem, "cbs")
-    assert found.cost == 6 and found.optimal and len(found.paths[1]) == 1
 
 
 @pytest.mark.parametrize("method", ["prioritized_search", "cbs"])

@@ -9,8 +9,7 @@ from hypothesis import strategies as st
 from lidarena.planning.team.deviation import DeviationCosts
 from lidarena.planning.team.grid_graph import STEP, GridGraph
 from lidarena.planning.team.traffic import Traffic
-from tests.planning.team.problems import Problem, meet, problems
-from tests.planning.team.test_grid_graph_and_conflicts import traffic_of
+from tests.planning.team.problems import Problem, meet, problems, traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 TWO = problems(robots=st.just(2), sides=st.integers(2, 5))
@@ -89,17 +88,6 @@ def test_the_quickest_way_past_another_robot_is_dijkstras(problem: Problem) -> N
     assert bool(traffic.plan(np.array([1]))) == np.isfinite(expected)
     if np.isfinite(expected):
         assert traffic.lengths[1] == expected
-
-
-@settings(max_examples=25, deadline=None, suppress_health_check=SLOW)
-@given(TWO, st.integers(0, 9))
-def test_a_robot_alone_leaves_as_late_as_it_was_told(problem: Problem, delay: int) -> None:
-    traffic = traffic_of(problem)
-    traffic.delays[0] = delay
-    assert traffic.plan(np.array([0])) == 1
-    start = traffic.ends[0, 0]
-    assert (traffic.paths[0, : delay + 1] == start).all()
-    assert traffic.lengths[0] == delay + traffic.alone[0]
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=SLOW)

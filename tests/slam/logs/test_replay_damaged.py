@@ -12,7 +12,6 @@ from hypothesis import strategies as st
 from lidarena.slam.logs.carmen import LogError, read_log
 from lidarena.slam.logs.relations import _nearest
 from lidarena.slam.logs.replay import beam_directions, informative_ranges, laser_odometry, trace_map
-from lidarena.slam.logs.replay_files import FILES, check_folder
 from lidarena.slam.logs.trajectory import Trajectory, load_tum, save_tum
 from lidarena.slam.planar import wrapped
 from tests.slam.drive import ring
@@ -131,16 +130,3 @@ def test_a_traced_map_is_cut_to_what_is_known_and_shows_each_end_point() -> None
         cells = np.floor((ends - grid.origin[:2]) / grid.resolution + 1e-6).astype(int)
         shown += (grid.occupancy[cells[:, 1], cells[:, 0]] == 100).sum() / len(heard)
     assert shown / len(scans) > 0.95
-
-
-def test_a_folder_with_other_peoples_files_is_refused(tmp_path: Path) -> None:
-    check_folder(tmp_path / "new")
-    check_folder(tmp_path)
-    for name in FILES:
-        (tmp_path / name).write_text("")
-    check_folder(tmp_path)
-    (tmp_path / "thesis.tex").write_text("")
-    with pytest.raises(LogError, match=r"holds 'thesis\.tex'; an empty or new one"):
-        check_folder(tmp_path)
-    with pytest.raises(LogError, match="is a file; a folder is needed"):
-        check_folder(tmp_path / "thesis.tex")
