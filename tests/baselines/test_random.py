@@ -1,4 +1,5 @@
 import gymnasium as gym
+import numpy as np
 import pytest
 
 import lidarena
@@ -14,7 +15,7 @@ def test_actions_are_allowed_ones_and_equal_seeds_draw_equal_ones(action: str) -
         policy.reset(seed=seed)
         runs.append([policy.act(None, {}) for _ in range(20)])
     assert all(env.action_space.contains(one) for run in runs for one in run)
-    numbers = [[float(one) for one in run] for run in runs]
+    numbers = [np.ravel(run).tolist() for run in runs]
     assert numbers[0] == numbers[1] != numbers[2]
 
 

@@ -289,7 +289,7 @@ def sense(
     goals: NDArray[np.float64],
     measurements: TeamMeasurements,
 ) -> None:
-    """Fill ``senses`` of one world after another, taken from ``counter`` (1,) up to ``last``.
+    """Fill ``measurements`` of one world after another, taken from ``counter`` (1,) up to ``last``.
 
     Args:
         counter: Shared by the threads.

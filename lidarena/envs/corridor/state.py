@@ -46,7 +46,7 @@ class CorridorCore:
 
     Attributes:
         plan: The floor plan.
-        physics: The true poses; everything that robots may know is in ``senses`` and ``goals``.
+        physics: The true poses; everything that robots may know is in ``measurements`` and ``goals``.
         measurements: What the robots know.
         goals: (worlds, robots, 2) [m].
         starts: (worlds, robots, 2) [m].

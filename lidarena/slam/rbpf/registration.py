@@ -23,7 +23,7 @@ from lidarena.slam.rbpf.point_blocks import (
 _REACH = 4
 """Cells from an end point up to which it is stamped; 0.2 m is 2.5 σ."""
 _SHIFTS = 8
-"""StartGoalSampler within a cell, along each axis, for which the stamped Gaussian is kept; they are 6 mm apart."""
+"""Places within a cell, along each axis, for which the stamped Gaussian is kept; they are 6 mm apart."""
 _FRESH = 0.75 * FULL
 """A point is stamped where the field is lower: no wall is known within about 6 cm of the middle of the
 point's cell."""

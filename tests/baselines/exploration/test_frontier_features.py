@@ -16,7 +16,7 @@ from lidarena.baselines.exploration.frontier_features import (
 from lidarena.planning.grid.surroundings import Surroundings
 
 CERTAINTY = Certainty(1e-3, 1e-4, 50.0)
-TRACK = np.array([[0.25, 0.25], [1.0, 0.25]])
+TRACK = np.array([[0.25, 0.25], [0.5, 0.25]])
 
 
 def room(known_columns: int = 40) -> tuple[Terrain, np.ndarray]:
