@@ -130,5 +130,12 @@ def mirrored(path: Path) -> list[Path]:
 
 
 def has_behaviour(path: Path) -> bool:
-    """Whether there is something to test in a module: any function."""
-    return any(isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef) for node in ast.walk(tree(path)))
+    """Whether there is something to test in a module: a function that is not just declared by a protocol."""
+    declared = {
+        id(function)
+        for node in ast.walk(tree(path))
+        if isinstance(node, ast.ClassDef) and any("Protocol" in ast.unparse(base) for base in node.bases)
+        for function in node.body
+    }
+    functions = (node for node in ast.walk(tree(path)) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef))
+    return any(id(node) not in declared for node in functions)

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 import torch
 from gymnasium import spaces
-from hypothesis import given, settings
 from hypothesis import strategies as st
 from stable_baselines3 import PPO
 from stable_baselines3.common.policies import ActorCriticPolicy
@@ -15,10 +14,10 @@ from stable_baselines3.common.torch_layers import FlattenExtractor
 
 from lidarena.agents import load, save_policy
 from lidarena.agents.shipped import resolve
-from lidarena.agents.space_json import from_json, to_json
 from lidarena.agents.vec_env import BatchVecEnv
 from lidarena.base.errors import PolicyFileError
 from tests.agents.fake_batch import RestorableLineBatch
+from tests.agents.policy_cases import make_model
 
 KINDS: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
     ("MlpPolicy", {}, {}),
@@ -26,14 +25,6 @@ KINDS: list[tuple[str, dict[str, Any], dict[str, Any]]] = [
     ("MlpPolicy", {}, {"net_arch": {"pi": [8, 8], "vf": []}}),
     ("MultiInputPolicy", {"observation": "map"}, {"net_arch": [16]}),
 ]
-
-
-def make_model(
-    kind: str = "MlpPolicy", env: dict[str, Any] | None = None, network: dict[str, Any] | None = None
-) -> PPO:
-    batch = BatchVecEnv(RestorableLineBatch(2, **env or {}))
-    model = PPO(kind, batch, policy_kwargs=network or {}, n_steps=32, batch_size=32, n_epochs=1, seed=0)
-    return model.learn(64)
 
 
 @pytest.fixture(scope="module")
@@ -89,65 +80,12 @@ def test_what_is_remembered(saved: Path) -> None:
     assert versions["torch"] == torch.__version__ and "stable-baselines3" in versions
 
 
-def test_drawn_actions_follow_the_seed_and_the_probabilities(saved: Path) -> None:
-    policy = load(saved, deterministic=False)
-    observation = np.full(3, 0.5, dtype=np.float32)
-
-    def draw(seed: int, count: int = 600) -> list[int]:
-        policy.reset(seed)
-        return [policy.act(observation) for _ in range(count)]
-
-    torch.manual_seed(1)
-    first = draw(3)
-    torch.manual_seed(2)
-    assert draw(3, 50) == first[:50] and draw(4, 50) != first[:50]
-    with torch.no_grad():
-        distribution: Any = policy.network.get_distribution(torch.as_tensor(observation[None])).distribution
-    shares = np.bincount(first, minlength=3) / len(first)
-    assert shares == pytest.approx(distribution.probs.numpy()[0], abs=0.07)
-
-
-def test_drawn_continuous_actions_stay_in_bounds(tmp_path: Path) -> None:
-    policy = load(save_policy(make_model(env={"action": "continuous"}), tmp_path, "x"), deterministic=False)
-    policy.reset(0)
-    actions = np.array([policy.act(np.zeros(3, np.float32)) for _ in range(200)])
-    assert actions.shape == (200, 1) and actions.dtype == np.float32
-    assert np.abs(actions).max() == 1 and actions.std() > 0.3
-
-
 def test_loading_leaves_the_random_generators_alone(saved: Path) -> None:
     torch.manual_seed(0)
     expected = torch.rand(1)
     torch.manual_seed(0)
     load(saved).act(np.zeros(3, np.float32))
     assert torch.rand(1) == expected
-
-
-@pytest.mark.parametrize(
-    ("observation", "message"),
-    [
-        (np.zeros(7, np.float32), r"shape \(3,\), but the observation is of shape \(7,\)"),
-        (np.zeros((1, 3), np.float32), r"of shape \(1, 3\)"),
-        (0.5, r"of shape \(\)"),
-        ({"map": np.zeros(3)}, r"a dict with keys \['map'\]"),
-    ],
-)
-def test_observations_of_another_environment(saved: Path, observation: Any, message: str) -> None:
-    with pytest.raises(PolicyFileError, match=message):
-        load(saved).act(observation, {})
-
-
-def test_dict_observations_of_another_environment(tmp_path: Path) -> None:
-    policy = load(save_policy(make_model("MultiInputPolicy", {"observation": "map"}), tmp_path, "x"))
-    state, picture = np.zeros(3, np.float32), np.zeros((1, 36, 36), np.uint8)
-    policy.act({"map": picture, "state": state})
-    for wrong, message in [
-        ({"map": picture}, "has keys"),
-        (state, "is no dict"),
-        ({"map": picture[0], "state": state}, r"observation\['map'\] is of shape \(36, 36\)"),
-    ]:
-        with pytest.raises(PolicyFileError, match=message):
-            policy.act(wrong)
 
 
 def test_environments_with_other_spaces(saved: Path) -> None:
@@ -306,22 +244,6 @@ leaves = st.one_of(
 def _random_box(shape: tuple[int, ...], seed: int) -> spaces.Box:
     low = np.random.default_rng(seed).normal(size=shape).astype(np.float32)
     return spaces.Box(low, low + 1, dtype=np.float32)
-
-
-@settings(max_examples=60)
-@given(
-    st.one_of(leaves, st.dictionaries(st.text(min_size=1, max_size=4), leaves, min_size=1, max_size=3).map(spaces.Dict))
-)
-def test_spaces_survive_json(space: spaces.Space[Any]) -> None:
-    again = from_json(json.loads(json.dumps(to_json(space), allow_nan=False)))
-    assert again == space
-    if isinstance(space, spaces.Dict) and isinstance(again, spaces.Dict):
-        assert list(again.spaces) == list(space.spaces)
-
-
-def test_other_spaces_cannot_be_written() -> None:
-    with pytest.raises(PolicyFileError, match="type Text"):
-        to_json(spaces.Text(3))
 
 
 def test_a_file_of_version_0_1_means_what_it_meant(tmp_path: Path) -> None:

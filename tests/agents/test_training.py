@@ -2,7 +2,6 @@ import ast
 import json
 import os
 import random
-import signal
 import sys
 from itertools import combinations
 from pathlib import Path
@@ -14,13 +13,12 @@ import torch
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 import lidarena.agents
-from lidarena.agents import TrainingStopped, load, load_config, train
+from lidarena.agents import load, load_config, train
 from lidarena.agents.learners import first_world_seed
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.errors import ConfigError
-from lidarena.base.files import write_folder
 from tests.agents.fake_batch import RestorableLineBatch
-from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
+from tests.agents.training_cases import curve, equal, small, weights
 
 SUFFIXES = {".yaml", ".json", ".safetensors", ".csv", ".npz"}
 
@@ -140,29 +138,6 @@ def test_a_training_needs_a_configuration() -> None:
         train()
 
 
-def test_a_folder_that_is_taken_is_left_alone(tmp_path: Path) -> None:
-    config = small(tmp_path / "run", "total_steps=64")
-    first = train(config, progress=False)
-    before = {path: path.stat().st_mtime_ns for path in first.rglob("*")}
-    assert train(config, progress=False) == tmp_path / "run-2"
-    assert train(config, progress=False) == tmp_path / "run-3"
-    assert load_config(tmp_path / "run-2" / "config.yaml", TrainingConfig).out == str(tmp_path / "run-2")
-    with pytest.raises(ConfigError, match=r"already holds files; choose another one, or go on with --resume"):
-        train(config, progress=False, exact_out=True)
-    assert {path: path.stat().st_mtime_ns for path in first.rglob("*")} == before
-
-
-def test_an_empty_folder_is_taken(tmp_path: Path) -> None:
-    (tmp_path / "run").mkdir()
-    assert train(small(tmp_path / "run", "total_steps=64"), progress=False, exact_out=True) == tmp_path / "run"
-
-
-def test_a_folder_that_cannot_be_made(tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    with pytest.raises(ConfigError, match="cannot make the run folder"):
-        train(small(tmp_path / "file" / "run", "total_steps=64"), progress=False)
-
-
 def test_nothing_in_a_run_folder_is_a_pickle(tmp_path: Path) -> None:
     folder = train(small(tmp_path / "run", "total_steps=128", "normalize_reward=true"), progress=False)
     for file in (path for path in folder.rglob("*") if path.is_file()):
@@ -180,79 +155,6 @@ def test_the_room_itself_never_imports_pickle() -> None:
             names += [str(node.module)] if isinstance(node, ast.ImportFrom) else []
             assert not {"pickle", "cloudpickle", "joblib", "dill"} & {name.split(".")[0] for name in names}, file
             assert not (isinstance(node, ast.Attribute) and ast.unparse(node) in ("torch.load", "torch.save")), file
-
-
-def test_weights_that_leave_the_finite_numbers_do_not_replace_good_ones(tmp_path: Path, monkeypatch: Any) -> None:
-    from stable_baselines3 import PPO
-
-    learn = PPO.train
-
-    def explode(self: PPO) -> None:
-        learn(self)
-        if self.num_timesteps >= 192:
-            with torch.no_grad():
-                self.policy.value_net.weight.fill_(float("inf"))
-
-    monkeypatch.setattr(PPO, "train", explode)
-    with pytest.raises(ConfigError, match=r"failed at step 192: the weights are no longer finite.*learning_rate"):
-        train(small(tmp_path / "run"), progress=False)
-    assert load(tmp_path / "run").training["steps"] == 128
-
-
-def test_a_full_disk_leaves_the_last_checkpoint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    calls: list[Any] = []
-
-    def full(folder: Path, fill: Any) -> Path:
-        calls.append(folder)
-        if len(calls) > 1:
-            raise OSError(28, "No space left on device")
-        return write_folder(folder, fill)
-
-    monkeypatch.setattr("lidarena.agents.checkpoint.write_folder", full)
-    with pytest.raises(OSError, match="No space left"):
-        train(small(tmp_path / "run"), progress=False)
-    monkeypatch.undo()
-    folder = train(resume=tmp_path / "run", progress=False)
-    assert equal(weights(folder), weights(train(small(tmp_path / "straight"), progress=False)))
-
-
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_ctrl_c_ends_the_training_after_the_update(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str], number: int
-) -> None:
-    before = signal.getsignal(number)
-    press_ctrl_c(monkeypatch, at_step=200, number=number)
-    with pytest.raises(TrainingStopped, match=r"stopped at step 256; .*train.py --resume") as stopped:
-        train(small(tmp_path / "run", "checkpoint_every=10_000"))
-    assert "once more to stop at once" in capsys.readouterr().err
-    assert (stopped.value.folder, stopped.value.step) == (tmp_path / "run", 256)
-    assert load(tmp_path / "run").training["steps"] == 256
-    assert [path.name for path in (tmp_path / "run" / "checkpoints").iterdir()] == ["step_0000000000256"]
-    assert signal.getsignal(number) is before
-
-
-@pytest.mark.parametrize("inherited", [signal.default_int_handler, signal.SIG_IGN])
-def test_ctrl_c_twice_ends_it_at_once_and_keeps_the_policy(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, inherited: Any, request: pytest.FixtureRequest
-) -> None:
-    before = signal.signal(signal.SIGINT, inherited)  # shells start programs in the background with Ctrl-C ignored
-    request.addfinalizer(lambda: signal.signal(signal.SIGINT, before))
-    press_ctrl_c(monkeypatch, at_step=300, times=2)
-    with pytest.raises(TrainingStopped, match=r"to go on from step \d+"):
-        train(small(tmp_path / "run"))
-    assert load(tmp_path / "run").training["steps"] >= 300
-    press_ctrl_c(monkeypatch, at_step=10, times=2)
-    with pytest.raises(TrainingStopped, match="it had no checkpoint yet"):
-        train(small(tmp_path / "early"))
-    assert load(tmp_path / "early").training["steps"] < 64
-    assert signal.getsignal(signal.SIGINT) is inherited
-
-
-def test_training_works_outside_the_main_thread(tmp_path: Path) -> None:
-    from concurrent.futures import ThreadPoolExecutor
-
-    with ThreadPoolExecutor(1) as pool:
-        assert pool.submit(train, small(tmp_path / "run", "total_steps=64"), None, False).result() == tmp_path / "run"
 
 
 def test_progress_tells_where_the_run_is(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

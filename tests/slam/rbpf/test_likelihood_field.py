@@ -3,7 +3,6 @@
 import math
 
 import numpy as np
-import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -109,12 +108,3 @@ def test_references_count_the_tables_that_name_a_tile() -> None:
     assert fields.free_count[0] + (named[1:] > 0).sum() == fields.free.shape[1] - 1
     clear_fields(fields, 0)
     assert not dense(fields, 3).any()
-
-
-def test_a_wall_is_invisible_from_behind() -> None:
-    fields = empty_fields(1, 1, 32, 32)
-    register(fields, 0, 0.775, 0.775, 4)
-    assert seen_at(fields, 0.775, 0.775, 4) == pytest.approx(1.0, abs=5e-3)
-    assert seen_at(fields, 0.775, 0.775, 6) > 0.9
-    assert seen_at(fields, 0.775, 0.775, 12) == 0.0
-    assert seen_at(fields, -0.1, 0.775, 4) == seen_at(fields, 20.0, 0.775, 4) == 0.0

@@ -1,0 +1,37 @@
+from pathlib import Path
+
+import numpy as np
+
+from lidarena import agents
+from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
+from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
+from lidarena.agents.training_config import TrainingConfig
+from lidarena.base.yaml_config import check_config
+from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
+from lidarena.evaluation.participants import make_participants
+
+MAZE = "maze:5?width=5&height=5"
+
+
+def test_an_agent_is_trained_saved_loaded_and_driven(tmp_path: Path) -> None:
+    content = {
+        "env": {"id": GOAL_CHOICE_ID, "keywords": {"map": MAZE, "max_episode_steps": 150, "particles": 5}},
+        "total_steps": 16,
+        "num_envs": 2,
+        "ppo": {"n_steps": 8, "batch_size": 16, "n_epochs": 1},
+        "policy": {"class": "CandidatePolicy", "net_arch": [8]},
+        "out": str(tmp_path / "run"),
+    }
+    folder = agents.train(check_config(content, TrainingConfig), progress=False)
+    env, policy = make_participants(
+        EnvEntry(id="lidarena/Exploration-v0", keywords={"map": MAZE}), PolicyEntry(name="own", path=str(folder))
+    )
+    assert isinstance(policy, GoalChoiceAgent)
+    paths = []
+    for _ in range(2):
+        observation, info = env.reset(seed=3)
+        policy.reset(seed=0)
+        for _ in range(60):
+            observation, _, _, _, info = env.step(policy.act(observation, info))
+        paths.append(info["pose"])
+    assert np.array_equal(*paths) and not policy.finished
