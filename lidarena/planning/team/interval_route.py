@@ -55,8 +55,7 @@ def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.in
 def _offer(memory: SearchMemory, stamp: int, state: int, spent: int, before: int, cost: int, size: int) -> int:
     """Put a state on the open list unless it was reached as cheaply before; return the list's size."""
     nodes = memory.nodes
-    met = nodes[state, 0]
-    if met > stamp or (met == stamp and nodes[state, 1] <= spent):
+    if nodes[state, 0] >= stamp and nodes[state, 1] <= spent:
         return size
     nodes[state, 0], nodes[state, 1], nodes[state, 2] = stamp, spent, before
     return push(memory.keys, memory.items, size, (cost << 31) - (spent ^ 4095), state)

@@ -82,9 +82,8 @@ def _expand(
             continue
         spent = int(nodes[state, 1]) + 4096 + (1 if m > 4 else 0) + costs.base[there] + layer[row, there]
         following = there * times + later
-        met = nodes[following, 0]
-        if met > stamp or (met == stamp and nodes[following, 1] <= spent):
-            continue
+        if nodes[following, 0] >= stamp and nodes[following, 1] <= spent:
+            continue  # one that is closed is opened again if it can be had for less: ``rest`` hides what that costs
         cost = at_least(spent + costs.ahead[there], rest)
         if cost > most:
             limits[0] = ~most

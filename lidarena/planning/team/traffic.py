@@ -76,6 +76,26 @@ def _clear_some(robots: NDArray[np.int64], graph: GraphArrays, reserved: Reserva
 
 
 @leaf
+def _remove(robots: NDArray[np.int64], arrays: FlatArrays) -> None:
+    """Take robots' paths out of the reservations; arguments as ``_plan_group``."""
+    graph, reserved, team = GraphArrays(*arrays[0:5]), Reservations(*arrays[8:11]), TeamPaths(*arrays[15:22])
+    for k in range(len(robots)):
+        if team.placed[robots[k]]:
+            clear(team.paths[robots[k]], team.lengths[robots[k]], graph, reserved)
+            team.placed[robots[k]] = False
+    _place_all(graph, reserved, team)
+
+
+@leaf
+def _place(robots: NDArray[np.int64], arrays: FlatArrays) -> None:
+    """Enter robots' paths into the reservations; arguments as ``_plan_group``."""
+    graph, reserved, team = GraphArrays(*arrays[0:5]), Reservations(*arrays[8:11]), TeamPaths(*arrays[15:22])
+    for k in range(len(robots)):
+        reserve(team.paths[robots[k]], team.lengths[robots[k]], graph, reserved)
+        team.placed[robots[k]] = True
+
+
+@leaf
 def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budget: int, anew: bool) -> int:
     """Plan robots; where ``anew``, they are placed, and keep their old paths unless the sum of steps is no larger.
 
@@ -185,13 +205,19 @@ class Traffic:
 
     def close(self) -> None:
         """Empty the tables and give the room for searches back; the paths stay."""
-        _clear_some(np.flatnonzero(self.placed), self.graph.arrays, self.reserved, self._team)
+        placed = self.placed.copy()
+        _remove(np.flatnonzero(placed), self._arrays)
+        self.placed[:] = placed
         self.graph.give_back(self._tables)
 
     def _plan(self, group: NDArray[np.int64], budget: int, anew: bool) -> int:
+        return _plan_group(group, self._arrays, self.timed, budget, anew)
+
+    @property
+    def _arrays(self) -> FlatArrays:
+        """The arrays that kernels take, see ``_plan_group``."""
         costs = (self.ahead, self.base, self.layer)
-        arrays = (*self.graph.arrays, *costs, *self.reserved, *self.memory, *self._team)
-        return _plan_group(group, arrays, self.timed, budget, anew)
+        return (*self.graph.arrays, *costs, *self.reserved, *self.memory, *self._team)
 
     def plan(self, order: NDArray[np.int64], budget: int = -1) -> int:
         """Plan robots one after the other past those that are placed, and place them.
@@ -215,15 +241,11 @@ class Traffic:
 
     def remove(self, robots: NDArray[np.int64]) -> None:
         """Take robots' paths out of the tables; the paths themselves stay where they are."""
-        _clear_some(robots[self.placed[robots]], self.graph.arrays, self.reserved, self._team)
-        self.placed[robots] = False
-        _place_all(self.graph.arrays, self.reserved, self._team)
+        _remove(robots, self._arrays)
 
     def place(self, robots: NDArray[np.int64]) -> None:
         """Enter robots' paths, as they are, into the tables."""
-        for robot in robots:
-            reserve(self.paths[robot], self.lengths[robot], self.graph.arrays, self.reserved)
-        self.placed[robots] = True
+        _place(robots, self._arrays)
 
     @property
     def expanded(self) -> int:

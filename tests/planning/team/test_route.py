@@ -103,3 +103,11 @@ def test_a_budget_is_kept_and_one_step_less_is_too_little(problem: Problem, time
     assert traffic.cost() == cost
     traffic.remove(everyone)
     assert cost == 0 or traffic.plan(everyone, budget=cost - 1) < len(everyone)
+
+
+def test_a_dearer_way_that_is_met_first_does_not_hide_a_cheaper_one() -> None:
+    """Robot 0 crosses the place where robot 1 is and wants to be, which hides what 1 spends until then."""
+    ends = np.array([[3, 3], [1, 0]]), np.array([[0, 0], [1, 0]])
+    traffic = surcharged(Problem(np.zeros((5, 4), bool), *ends, 4, 0.0), 0, False)
+    assert traffic.plan(np.array([1])) == 1
+    assert cost_of_path(traffic, 1) == slow_cost(traffic, 1, 0) == 6
