@@ -23,7 +23,7 @@ LEAST_DEVIATION, DECADES = 1e-3, 4.0
 """Standard deviations of poses are observed from 1 mm or 1 mrad on, over so many powers of ten."""
 
 
-class Observer(Protocol):
+class BatchObserver(Protocol):
     """Makes the observations of a batch."""
 
     space: gym.Space[Any]
@@ -149,7 +149,7 @@ ENTROPY = "_entropy"
 """End of the names of the same observations with the entropy in the last place."""
 
 
-def make_observer(kind: str, action_parts: int, lidar: LidarSpec) -> Observer:
+def make_observer(kind: str, action_parts: int, lidar: LidarSpec) -> BatchObserver:
     """Make what the keyword ``observation`` names, one of ``options.OBSERVATIONS``.
 
     Raises:

@@ -11,4 +11,5 @@ def test_lidar_policies_read_nothing_but_the_lidar(policy: str) -> None:
 
 @pytest.mark.parametrize("policy", LIDAR)
 def test_noise_stops_no_lidar_policy(policy: str) -> None:
-    assert drive(policy, arena="random:0", density=0.08, lidar={"noise": 0.2})[0] in ("success", "collision", "finished")
+    ending = drive(policy, arena="random:0", density=0.08, lidar={"noise": 0.2})[0]
+    assert ending in ("success", "collision", "finished")

@@ -126,9 +126,9 @@ def crowded(rng: np.random.Generator) -> Floorplan:
 
 
 def test_no_room_for_the_robot_is_refused() -> None:
-    with pytest.raises(MapError, match="does not fit at the start .* of map 'crowded'"):
+    with pytest.raises(MapError, match=r"does not fit at the start .* of map 'crowded'"):
         ExplorationEnv(map=crowded).reset(seed=0)
-    with pytest.raises(MapError, match="does not fit at the start .* of map 'crowded'"):
+    with pytest.raises(MapError, match=r"does not fit at the start .* of map 'crowded'"):
         ExplorationEnv(map=crowded(np.random.default_rng(0)))
 
 
