@@ -16,7 +16,7 @@ from lidarena.envs.registration import families, family_of
 Made = TypeVar("Made", bound=Callable[..., Policy])
 
 ENTRY_POINTS = "lidarena.baselines"
-"""Group under which an installed package tells of its baselines: a module that registers them, or a policy's maker."""
+"""Group under which an installed package declares its baselines: a module that registers them, or a policy's maker."""
 
 
 @dataclass(frozen=True)
@@ -71,7 +71,7 @@ def _load() -> None:
                 _enter(point.name, point.load())
             except Exception as error:  # a package of somebody else must not keep ours from working
                 package = getattr(point.dist, "name", "a package")
-                words = f"{package} tells of a baseline {point.name!r}, which is left out: {error}"
+                words = f"{package} declares a baseline {point.name!r}, which is left out: {error}"
                 warnings.warn(words, RuntimeWarning, stacklevel=4)
 
 

@@ -169,7 +169,7 @@ def _legend(figure: "Figure", panels: Sequence["Axes"]) -> None:
 
 
 def _figure(width: float, height: float) -> "Figure":
-    """Return a figure that no window system hears of (pyplot is never imported)."""
+    """Return a figure that opens no window (pyplot is never imported)."""
     from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 

@@ -1,6 +1,6 @@
 """The area that a scan saw free, as runs of cells row by row: a polygon instead of hundreds of overlapping lines.
 
-Neighbouring beams speak for the gap between them up to the shorter one's end and as long as the gap is narrower than
+Neighbouring beams clear the gap between them up to the shorter one's end and as long as the gap is narrower than
 ``GAP``; where they end on the same surface, up to the line between their ends. What a beam saw beyond that is a line
 (``occupancy.trace_scan`` walks it).
 """
@@ -26,7 +26,7 @@ class Outlines(NamedTuple):
         heads: (W, rows) int32: each row's first crossing, -1 for none.
         crossings: (W, capacity, 2) int32: a crossing's column (the first cell whose centre lies behind it) and the next
             crossing of its row, -1 for none; by ascending column.
-        reaches: (W, beams, 2) how far each beam speaks for the gaps on its right and on its left [cells].
+        reaches: (W, beams, 2) how far each beam clears the gaps on its right and on its left [cells].
     """
 
     heads: NDArray[np.int32]
@@ -95,7 +95,7 @@ def _find_reaches(
     per_cell: float,
     reaches: NDArray[np.float64],
 ) -> None:
-    """How far each beam speaks for the gap on its right and on its left (beams, 2) [cells]."""
+    """How far each beam clears the gap on its right and on its left (beams, 2) [cells]."""
     last = scan.shape[0] - 1
     a, ax, ay = min(np.float64(scan[last]), max_range), directions[0, last], directions[1, last]
     for k in range(scan.shape[0]):

@@ -89,7 +89,7 @@ def env3() -> Floorplan:
 def env4() -> Floorplan:
     """Env-4, 5.8 m wide and 8.8 m high: a corridor between two halls, three rooms on either side of it.
 
-    Each corner room has a door to its hall and one to the corridor, so that whoever crosses it closes a loop; the two
+    Each corner room has a door to its hall and one to the corridor, so that crossing it closes a loop; the two
     middle rooms are dead ends.
     """
     width, height, middle = 5.8, 8.8, 4.4

@@ -41,4 +41,4 @@ def check_extent(where: str, rows: int, columns: int, resolution: float) -> None
     if rows * columns > MAX_CELLS:
         raise MapError(f"{size}; at most {MAX_CELLS // 1_000_000} million cells are allowed")
     if max(rows, columns) * resolution > MAX_SIDE:
-        raise MapError(f"{size}; sides of at most {MAX_SIDE:g} m are allowed, so perhaps its cells are smaller")
+        raise MapError(f"{size}; sides of at most {MAX_SIDE:g} m are allowed, so its cells may be smaller")

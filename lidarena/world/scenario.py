@@ -26,7 +26,7 @@ def load_scenario(
         path: The file.
         free: (rows, cols) passable cells of its map, from ``load_movingai``.
         robots: How many; None = all.
-        map_name: Name of the map's file without folders, if it shall be compared with the one in the scenario.
+        map_name: Name of the map's file without folders, if it is to be compared with the one in the scenario.
 
     Raises:
         ScenarioError: The file is missing or torn, belongs to another map, has too few robots, or has a start or

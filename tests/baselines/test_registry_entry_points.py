@@ -77,8 +77,8 @@ for env, options in ((arena, {"sharpl": True}), (maze, {})):
     assert done.returncode == 0, done.stderr
     lines = done.stdout.splitlines()
     assert lines[0] == "['stranger_left', 'stranger_right']"
-    assert lines[1].startswith("stranger tells of a baseline 'frontier', which is left out: ")
-    assert lines[2].startswith("stranger tells of a baseline 'stranger_gone', which is left out: ")
+    assert lines[1].startswith("stranger declares a baseline 'frontier', which is left out: ")
+    assert lines[2].startswith("stranger declares a baseline 'stranger_gone', which is left out: ")
     assert lines[3] == "[1.] FrontierPolicy"
     assert "no option 'sharpl'; did you mean 'sharply'" in lines[4]
     assert "'stranger_left' drives arena environments only" in lines[5]

@@ -106,7 +106,7 @@ def test_absurd_cells_are_refused(tmp_path: Path, cell: float) -> None:
 
 def test_a_map_of_more_than_a_kilometre_is_refused_with_a_hint(tmp_path: Path) -> None:
     path = write(tmp_path, "type octile\nheight 1\nwidth 1024\nmap\n" + "." * 1024)
-    with pytest.raises(MapError, match="at most 1000 m are allowed, so perhaps its cells are smaller"):
+    with pytest.raises(MapError, match="at most 1000 m are allowed, so its cells may be smaller"):
         movingai_floorplan(path)
     assert movingai_floorplan(path, cell=0.5).bounds[2] == 512
 

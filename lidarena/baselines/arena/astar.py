@@ -1,4 +1,4 @@
-"""A* on a grid of the known arena: the yardstick of the potential fields."""
+"""A* on a grid of the known arena: what the potential fields are compared with."""
 
 from typing import Any
 

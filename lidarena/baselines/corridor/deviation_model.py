@@ -1,4 +1,4 @@
-"""How far robots stray from their planned paths: Bennewitz & Burgard's Fig. 2, learned from executions (section 2)."""
+"""How far robots deviate from their planned paths: Bennewitz & Burgard's Fig. 2, learned from runs (section 2)."""
 
 import json
 from dataclasses import dataclass
@@ -61,7 +61,7 @@ class DeviationModel:
         return np.interp(np.asarray(distance, np.float64), self.knots[:, 0], self.knots[:, 1], right=0.0)
 
     def risk(self, gap: float, reach: float) -> float:
-        """The probability that a robot strays to within ``reach`` of a point, all directions being as likely.
+        """The probability that a robot deviates to within ``reach`` of a point, all directions being as likely.
 
         Args:
             gap: Distance of the point from where the robot is planned to be [m].

@@ -1,4 +1,4 @@
-"""Learn how far robots stray from their plans, as Bennewitz & Burgard do (section 2), and draw it like their Fig. 2.
+"""Learn how far robots deviate from their plans, as Bennewitz & Burgard do (section 2), and draw it like their Fig. 2.
 
     python -m lidarena.baselines.corridor.learn_deviation [--runs 28] [--seed 0] [--out FILE] [--picture FILE]
 
@@ -82,7 +82,7 @@ def draw_model(model: DeviationModel, path: Path) -> None:
 def main(arguments: list[str] | None = None) -> int:
     """Learn, store and draw the model; return 0, or 2 for a refusal."""
     make_output_printable()
-    parser = argparse.ArgumentParser(description="Learn how far robots stray from their plans.")
+    parser = argparse.ArgumentParser(description="Learn how far robots deviate from their plans.")
     parser.add_argument(
         "--runs", type=int, default=RUNS, help="two-robot executions; Bennewitz & Burgard's 28 by default"
     )

@@ -150,7 +150,7 @@ class IndependentFleet(PlannedFleet):
 
 @register("prioritized_astar", family="corridor")
 class PrioritizedFleet(PlannedFleet):
-    """Bennewitz & Burgard's method: longest way first; who conflicts is planned anew, off where others may stray."""
+    """Bennewitz & Burgard's method: longest way first; who conflicts is replanned, off where others may deviate."""
 
     method: Method = "prioritized_astar"
 
@@ -167,7 +167,7 @@ class PrioritizedFleet(PlannedFleet):
 
         Args:
             env: A ``corridor_v0.parallel_env`` or ``lidarena/CorridorCentral-v0``.
-            deviation: Whether the model of how robots stray from their plans has a say.
+            deviation: Whether the model of how robots deviate from their plans is used.
             model: That model; None takes the one that comes with the package.
             planning_radius: Of the discs that are planned for [m]; None leaves some room beside the robots.
             step: How long a step of the plan, a cell of 0.2 m, takes [s].

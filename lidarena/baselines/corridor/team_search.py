@@ -1,4 +1,4 @@
-"""Prioritized search in the world: the plan's order is kept, whoever is late or blocked is planned around."""
+"""Prioritized search in the world: the plan's order is kept, robots that are late or blocked are planned around."""
 
 from typing import Any
 
@@ -29,10 +29,10 @@ class SearchingFleet(PlannedFleet):
 
     A robot begins a step when everybody who is to pass there first has done so, so that nobody's being late leads to a
     collision. When robots wait for one that is held up, or for one that has come to a stand for good, and when
-    nobody has moved on for a while (a deadlock), the team is planned anew from where it stands.
+    nobody has moved on for a while (a deadlock), the team is replanned from where it stands.
 
     Attributes:
-        replans: How often the team was planned anew in this episode.
+        replans: How often the team was replanned in this episode.
     """
 
     method: Method = "prioritized_search"
@@ -50,7 +50,7 @@ class SearchingFleet(PlannedFleet):
 
         Args:
             env: A ``corridor_v0.parallel_env`` or ``lidarena/CorridorCentral-v0``.
-            replan: Whether the team may be planned anew on its way.
+            replan: Whether the team may be replanned on its way.
             iterations: Greatest number of orders and of neighbourhoods that a plan may take.
             planning_radius: Of the discs that are planned for [m]; None leaves some room beside the robots.
             time_limit: Of a plan [s].
@@ -76,7 +76,7 @@ class SearchingFleet(PlannedFleet):
         return super().extras(grid) | {"iterations": self.iterations}
 
     def begin_driving(self) -> None:
-        """Take up a new plan of everybody."""
+        """Take up a new plan of the team."""
         assert self.plan is not None
         self._take_up(self.plan, self.radius)
 
@@ -101,7 +101,7 @@ class SearchingFleet(PlannedFleet):
         return commands
 
     def _note(self) -> str:
-        return f"{self.message}  Planned anew {self.replans} times." if self.replans else self.message
+        return f"{self.message}  Replanned {self.replans} times." if self.replans else self.message
 
     def _watch(self, state: FleetState) -> None:
         """Note who moves."""
@@ -135,7 +135,7 @@ class SearchingFleet(PlannedFleet):
         return state.time - max(self._stepped_at, self._planned_at) > _DEADLOCK
 
     def _replan(self, state: FleetState) -> None:
-        """Plan everybody who moves from where he stands, around those who do not; keep the old plan if that fails."""
+        """Replan the robots that move, from where they are, around the others; keep the old plan if that fails."""
         around = self._held_up(state)
         if self._deadlocked(state):  # who was planned around is told to stand: only a new plan shows whether it can go
             around &= ~state.active
@@ -152,7 +152,7 @@ class SearchingFleet(PlannedFleet):
                 return
 
     def _plan_some(self, state: FleetState, movers: NDArray[np.int64], radius: float) -> TeamPlan | None:
-        """A plan of everybody in which only ``movers`` move; None if there is none."""
+        """A plan of the team in which only ``movers`` move; None if there is none."""
         grid = self.grid
         cells, goals = grid.cells(state.poses[:, :2]), grid.cells(state.goals)
         blocked = grid.blocked.copy()

@@ -1,6 +1,6 @@
 """Driving an exploration robot to a place on the map that it believes in.
 
-The driver reads the map and the pose from ``info`` and nothing else but the beams. What they have hit nearby of late
+The driver reads the map and the pose from ``info`` and nothing else but the beams. What they have hit nearby lately
 counts as occupied even where the map says otherwise: a thin leg that the map has a hand's breadth beside is where the
 beams see it, not where older scans outvote them. It plans a path with A* on the
 inflated map, lets a :class:`PathFollower` turn it into commands, and looks at the
@@ -108,7 +108,7 @@ class Driver:
     def _with_hits(
         self, occupancy: NDArray[np.int8], origin: tuple[float, float], resolution: float
     ) -> NDArray[np.int8]:
-        """A copy of a part of the map in which what the beams have hit of late is occupied."""
+        """A copy of a part of the map in which what the beams have hit lately is occupied."""
         marked = np.array(occupancy, dtype=np.int8, order="C")
         cells = np.floor((np.concatenate(self._hits) - origin) / resolution).astype(np.int64)
         inside = ((cells >= 0) & (cells < (marked.shape[1], marked.shape[0]))).all(axis=1)

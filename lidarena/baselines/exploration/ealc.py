@@ -25,7 +25,7 @@ class EalcPolicy(FrontierPolicy):
     """Frontier exploration that closes loops on purpose.
 
     A topological graph keeps where the robot has been, and how uncertain its pose was there. At every planning instant
-    the poses of interest are the nodes that are near as the crow flies, far along the graph, and had less uncertainty
+    the poses of interest are the nodes that are near in a straight line, far along the graph, and had less uncertainty
     than the robot has now. If there are any, the robot drives to the nearest and on along the nodes in the order in
     which they were made, until on reaching one its uncertainty is back at the level of the first, or for ``retrace``.
     When no frontier is left, it visits once more, the last first, the nodes whose uncertainty exceeded the mean, and is

@@ -1,4 +1,4 @@
-"""Exploration by choosing among the frontiers: somebody chooses, the driver gets there."""
+"""Exploration by choosing among the frontiers: a chooser picks one, the driver goes there."""
 
 import math
 from collections import deque

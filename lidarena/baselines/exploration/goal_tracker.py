@@ -48,7 +48,7 @@ class GoalBlacklist:
             self._progress_at, self._shortest = step, math.inf
 
     def watch(self, remaining: float, arrived: bool, step: int) -> None:
-        """Note how the pursued goal comes nearer, and give it up if it does not, or was reached in vain.
+        """Note how the pursued goal comes nearer, and give it up if it does not, or was reached without effect.
 
         Args:
             remaining: Length of the path that remains (m).

@@ -17,7 +17,7 @@ from lidarena.planning.grid.steering import Commands, loiter_gap, move, steer, t
 from lidarena.planning.grid.surroundings import Surroundings, gap_at, line_is_free
 
 _SHORTEST_CARROT = 0.4  # the lookahead point lies at least so far ahead on the path, in sight or not (m)
-_TOLERANCE = 0.03  # so much less clearance than planned is no reason to plan anew: poses jitter (m)
+_TOLERANCE = 0.03  # so much less clearance than planned is no reason to replan: poses jitter (m)
 _SHORTEST_LOOK = 0.2  # nearer to the robot a path is not checked (m)
 
 

@@ -2,7 +2,7 @@
 
 The robot knows a handful of commands (v, w), each held for one decision period. An edge of the search repeats one
 command until it makes a difference (some 0.1 m or 0.18 rad); states fall into bins of position and heading; the cost is
-the time, dearer where obstacles are near. Turning costs its true time, so a robot that turns slowly is sent straight.
+the time, more near obstacles. Turning costs its true time, so a robot that turns slowly is sent straight.
 
 A sequence must end where the robot could *loiter*: turn a full circle, left or right, without touching anything. So
 a robot that has followed a sequence to its end, and finds no further one, is still safe. For DA-SLAM's robot, which

@@ -1,4 +1,4 @@
-"""Grid A* among circles: the yardstick of the potential fields, and the global path that guides one of them."""
+"""Grid A* among circles: what the potential fields are compared with, and the global path that guides one of them."""
 
 import math
 
@@ -123,7 +123,7 @@ def astar_path(
     robot_radius: float = 0.0,
     bounds: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
-    """Return A*'s path among circles, the yardstick: shortest on a grid of 0.5 m in a 100 m room, finer if it must be.
+    """Return A*'s path among circles, for comparison: shortest on a grid of 0.5 m in a 100 m room, finer if it must be.
 
     Args:
         circles: (K, 3) x, y, radius (m).

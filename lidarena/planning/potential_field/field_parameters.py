@@ -103,7 +103,7 @@ class FieldParameters:
             )
 
     def fitted(self, scale: float, given: Mapping[str, Any]) -> "FieldParameters":
-        """Return the same parameters with every length multiplied by ``scale``, but for those that were ``given``."""
+        """Return the same parameters with every length multiplied by ``scale``, except those that were ``given``."""
         if not self.fit_scale or scale == 1.0:
             return self
         lengths: dict[str, Any] = {name: getattr(self, name) * scale for name in self.LENGTHS if name not in given}

@@ -114,7 +114,7 @@ def _number(name: str, value: object) -> float:
 
 def _array(name: str, values: ArrayLike, wanted: str) -> NDArray[np.float64]:
     try:
-        return np.array(values, dtype=np.float64, order="C")  # kernels would be compiled anew for another order
+        return np.array(values, dtype=np.float64, order="C")  # kernels would be compiled again for another order
     except (TypeError, ValueError):
         raise MapError(f"{name} {values!r} are not numbers; {wanted}") from None
 

@@ -21,7 +21,7 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
     """Conflict-based search under the cost of a plan of prioritized search.
 
     Args:
-        traffic: The team, nobody placed.
+        traffic: The team, no robot placed.
         seconds: Time limit; a fifth of it goes to prioritized search if that needs it.
         iterations: Greatest number of neighbourhoods, and of nodes; None = any.
         rng: For prioritized search.

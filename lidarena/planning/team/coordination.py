@@ -73,7 +73,7 @@ def plan_coordination(traffic: Traffic, back_up: bool = False) -> TeamPlan:
     """Coordinate a team on its independent paths, longest first.
 
     Args:
-        traffic: The team, nobody placed.
+        traffic: The team, no robot placed.
         back_up: Whether robots may also drive backwards along their paths.
     """
     plan_alone(traffic)

@@ -1,6 +1,6 @@
-"""What it costs to be where another robot may stray to: Bennewitz & Burgard's look-up tables P_t.
+"""What it costs to be where another robot may deviate to: Bennewitz & Burgard's look-up tables P_t.
 
-Section 2, C_t^k(x, y) = P(occ_xy) + sum over i < k of P_t^i(x, y): robots stray from their planned paths, and P_t^i is
+Section 2, C_t^k(x, y) = P(occ_xy) + sum over i < k of P_t^i(x, y): robots deviate from their paths, and P_t^i is
 the probability that robot i is in a place at time t. The probability falls with the distance from where it is
 planned to be; Bennewitz & Burgard learn a histogram of distances and approximate it by linear pieces.
 """

@@ -116,7 +116,7 @@ def plan_joint(traffic: Traffic, seconds: float) -> TeamPlan:
     """The optimal plan of two robots.
 
     Args:
-        traffic: Two robots, nobody placed.
+        traffic: Two robots, none placed.
         seconds: Time limit; the search expands a million states a second.
     """
     graph = traffic.graph

@@ -57,7 +57,7 @@ def plan_team(
         radius: Of every robot, in cells; 0 = points.
         time_limit: Seconds that ``prioritized_search`` and ``cbs`` may take (``joint_astar``: a million states each).
         seed: Of the random choices of ``prioritized_search`` and ``cbs``.
-        iterations: Greatest number of neighbourhoods that are planned anew, of orders and of nodes; with it and a
+        iterations: Greatest number of neighbourhoods that are replanned, of orders and of nodes; with it and a
             ``time_limit`` of infinity, the same input gives the same plan on every machine.
         cell_costs: (rows, cols) what being in a cell for a step costs besides the step itself, Bennewitz & Burgard's
             P(occ) in steps, 0 to 64; for ``independent_astar``, ``prioritized_astar`` and ``prioritized_search``.
@@ -80,10 +80,10 @@ def plan_team(
     graph = grid_graph_of(blocked, connectivity, float(radius))
     ends = np.stack([_places(graph, first, "start"), _places(graph, final, "goal")], axis=1)
     surcharge = _surcharge(graph, cell_costs, method)
-    strays = _deviation(deviation, method)
+    deviation_costs = _deviation(deviation, method)
     _check_reachable(graph, ends, blocked)
-    traffic = Traffic(graph, ends, surcharge, timed=strays is not None)
-    plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), strays)
+    traffic = Traffic(graph, ends, surcharge, timed=deviation_costs is not None)
+    plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), deviation_costs)
     traffic.close()
     return plan
 
@@ -103,13 +103,13 @@ def _plan(
     time_limit: float,
     iterations: int | None,
     rng: np.random.Generator,
-    strays: DeviationCosts | None,
+    deviation_costs: DeviationCosts | None,
 ) -> TeamPlan:
     match method:
         case "independent_astar":
             return plan_independent(traffic)
         case "prioritized_astar":
-            return plan_prioritized(traffic, strays)
+            return plan_prioritized(traffic, deviation_costs)
         case "coordination":
             return plan_coordination(traffic)
         case "joint_astar":

@@ -4,7 +4,7 @@ Robots are late; a plan that is free of conflicts in time need not stay so. What
 robots pass each place, and that order can be kept at any speed: before a robot begins a step of its path, everybody who
 passes near that step earlier in the plan must have completed the step with which he does (action dependencies: Ma,
 Kumar & Koenig 2017; Hönig et al. 2019). Dependencies point to earlier steps of the plan, or from a robot to the one
-whose room it takes in the same step, so whoever is farthest behind may go on, unless robots follow each other in a
+whose room it takes in the same step, so the robot farthest behind may go on, unless robots follow each other in a
 ring: the order itself brings no other deadlock.
 """
 

@@ -42,22 +42,22 @@ def plan_independent(traffic: Traffic) -> TeamPlan:
 
 
 def plan_prioritized(traffic: Traffic, deviation: DeviationCosts | None = None) -> TeamPlan:
-    """Bennewitz & Burgard's method: longest first, a robot is planned anew only if it conflicts with one before it.
+    """Bennewitz & Burgard's method: longest first, a robot is replanned only if it conflicts with one before it.
 
-    Where robots may stray from their paths, paths conflict already if the risk on the way is worth a step or more.
+    Where robots may deviate from their paths, paths conflict already if the risk on the way is worth a step or more.
 
     Args:
-        traffic: The team, nobody placed.
-        deviation: What it costs to be where earlier robots may stray to, eq. for C_t^k in section 2.
+        traffic: The team, no robot placed.
+        deviation: What it costs to be where earlier robots may deviate to, eq. for C_t^k in section 2.
     """
     plan_alone(traffic)
     order = longest_first(traffic)
-    anew = 0
+    replanned = 0
     for k, robot in enumerate(order):
         times = conflicts_of(traffic)[robot, order[:k]]
         risky = deviation is not None and deviation.charge(traffic, int(robot)) >= STEP
         if k and ((times >= 0).any() or risky):
-            anew += 1
+            replanned += 1
             if not traffic.plan(np.array([robot])):
                 message = (
                     f"Robot {robot} (priority {k + 1} of {len(traffic)}, longest first) found no way past the robots"
@@ -68,4 +68,4 @@ def plan_prioritized(traffic: Traffic, deviation: DeviationCosts | None = None) 
             traffic.place(np.array([robot]))
         if deviation is not None:
             deviation.add(traffic, int(robot))
-    return solved_plan(traffic, f"{anew} of {len(traffic)} robots were planned anew.", order=order)
+    return solved_plan(traffic, f"{replanned} of {len(traffic)} robots were replanned.", order=order)

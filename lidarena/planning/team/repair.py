@@ -1,4 +1,4 @@
-"""Large-neighbourhood repair: plan a few robots of a finished plan anew, keep what is no worse, until time is up.
+"""Large-neighbourhood repair: replan a few robots of a finished plan, keep what is no worse, until time is up.
 
 After Li et al. 2021 ("Anytime multi-agent path finding via large neighborhood search"): a neighbourhood is a robot that
 is late and the robots in its way, or robots chosen at random; equally good plans are accepted, so that the search

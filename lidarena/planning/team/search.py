@@ -27,7 +27,7 @@ def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tu
     """Plan a team with failure-driven promotion.
 
     Args:
-        traffic: The team, nobody placed; afterwards everyone, or as many as the last order let through.
+        traffic: The team, no robot placed; afterwards everyone, or as many as the last order let through.
         budget: Time and orders left; the first order is always tried.
         rng: For the orders after one that comes back.
 
@@ -64,7 +64,7 @@ def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> T
     first = traffic.cost()
     neighbourhoods = Repair(traffic, rng).run(budget, PATIENCE + _PATIENCE_A_ROBOT * len(traffic))
     message = (
-        f"Solved by order {tried} at cost {first}; {neighbourhoods} neighbourhoods were planned anew,"
+        f"Solved by order {tried} at cost {first}; {neighbourhoods} neighbourhoods were replanned,"
         f" which saved {first - traffic.cost()} steps."
     )
     return solved_plan(traffic, message, order=order)

@@ -96,8 +96,8 @@ def _place(robots: NDArray[np.int64], arrays: FlatArrays) -> None:
 
 
 @leaf
-def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budget: int, anew: bool) -> int:
-    """Plan robots; where ``anew``, they are placed, and keep their old paths unless the sum of steps is no larger.
+def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budget: int, replan: bool) -> int:
+    """Plan robots; where ``replan``, they are placed, and keep their old paths unless the sum of steps is no larger.
 
     One kernel for both, since the searches in it take long to compile.
 
@@ -107,14 +107,14 @@ def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budge
             ``TeamPaths``, one after the other: handing five named tuples over takes as long as a small search.
         timed: Whether to search places at times, not safe intervals.
         budget: Greatest number of steps of all robots of ``group`` together; -1 = any.
-        anew: Whether ``group`` is placed.
+        replan: Whether ``group`` is placed.
 
     Returns:
-        How many robots were placed before one failed; where ``anew`` the steps saved, -1 if the old paths were kept.
+        How many robots were placed before one failed; where ``replan`` the steps saved, -1 if the old paths were kept.
     """
     graph, costs = GraphArrays(*arrays[0:5]), PlaceCosts(*arrays[5:8])
     reserved, memory, team = Reservations(*arrays[8:11]), SearchMemory(*arrays[11:15]), TeamPaths(*arrays[15:22])
-    if anew:
+    if replan:
         budget = 0
         for k in range(len(group)):
             robot = group[k]
@@ -125,7 +125,7 @@ def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budge
             team.placed[group[k]] = False
         _place_all(graph, reserved, team)
     planned = _plan_in_order(group, graph, costs, reserved, memory, team, timed, budget)
-    if not anew:
+    if not replan:
         return planned
     if planned == len(group):
         for k in range(len(group)):
@@ -210,8 +210,8 @@ class Traffic:
         self.placed[:] = placed
         self.graph.give_back(self._tables)
 
-    def _plan(self, group: NDArray[np.int64], budget: int, anew: bool) -> int:
-        return _plan_group(group, self._arrays, self.timed, budget, anew)
+    def _plan(self, group: NDArray[np.int64], budget: int, replan: bool) -> int:
+        return _plan_group(group, self._arrays, self.timed, budget, replan)
 
     @property
     def _arrays(self) -> FlatArrays:
@@ -232,7 +232,7 @@ class Traffic:
         return self._plan(order, budget, False)
 
     def replan(self, group: NDArray[np.int64]) -> int:
-        """Plan robots, all of them placed, anew in this order; the old paths stay unless the sum is no larger.
+        """Replan robots, all of them placed, in this order; the old paths stay unless the sum is no larger.
 
         Returns:
             Steps saved; -1 if the old paths were kept.

@@ -274,7 +274,7 @@ def trace_map(
 
 
 def _cropped(grid: NDArray[np.int8], origin: NDArray[np.float64]) -> OccupancyMap:
-    """Cut off the unknown borders of a grid, but for a cell; an unknown grid becomes one unknown cell."""
+    """Cut off the unknown borders of a grid except one cell; an unknown grid becomes one unknown cell."""
     rows, columns = np.flatnonzero((grid >= 0).any(axis=1)), np.flatnonzero((grid >= 0).any(axis=0))
     if not len(rows):
         return OccupancyMap(np.full((1, 1), -1, np.int8), CELL, (float(origin[0]), float(origin[1]), 0.0))

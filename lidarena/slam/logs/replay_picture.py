@@ -27,7 +27,7 @@ def draw_replay(log: RecordedLog, result: Replay) -> "Figure":
         result: What `lidarena.slam.logs.replay.replay` made of it.
 
     Returns:
-        A figure that no window system hears of: on the left the map with the way of the robot, dark at its beginning
+        A figure that opens no window: on the left the map with the way of the robot, dark at its beginning
         and bright at its end, on the right the same scans drawn where the wheels' odometry puts them.
     """
     from matplotlib.figure import Figure

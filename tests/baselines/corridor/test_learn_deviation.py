@@ -13,7 +13,7 @@ def test_it_is_learned_from_executions_by_a_command(tmp_path, capsys):
     assert (tmp_path / "picture.png").stat().st_size > 5_000
 
 
-def test_without_noise_robots_hardly_stray():
+def test_without_noise_robots_hardly_deviate():
     quiet = record_runs(1, motion_noise=0.0, localization_noise=0.0)
     assert quiet.mean() < record_runs(1, motion_noise=3.0).mean()
 

@@ -121,5 +121,5 @@ def test_the_picture_tells_how_often_was_planned_anew() -> None:
     assert env.episodes.sketches[0].note == policy.message
     held(env, policy, infos, {"robot_1"}, 15)
     sketch = env.episodes.sketches[0]
-    assert f"Planned anew {policy.replans} times." in sketch.note and policy.replans > 0
+    assert f"Replanned {policy.replans} times." in sketch.note and policy.replans > 0
     assert set(sketch.curves) <= {0, 1} and sketch.conflicts.shape == (0, 2)
