@@ -99,11 +99,9 @@ class ArenaEnv(SingleWorld):
     | `solvable` | bool | `False` | pass over `"random"` arenas in which A* finds no path |
     | `action` | str | `"continuous"` | or `"discrete"` |
     | `observation` | str or observer | `"ranges"` | what is seen, see above |
-    | `beams` | int | `36` | of the lidar |
-    | `max_range` | float or None | `None` | of the lidar [m]; None: 30 m, to scale |
-    | `lidar_noise` | float | `0.0` | standard deviation of a range [m] |
+    | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: the arena's own |
+    | `lidar` | str, dict or spec | `None` | the same with a ``LidarSpec``; None: 36 beams of 30 m, to scale |
     | `knowledge` | str | `"map"` | obstacles in the info; `"lidar"` only what the lidar sees |
-    | `speed` | float | `1.0` | of the robot [m/s] |
     | `decision_period` | float or None | `None` | time between decisions [s]; None: 1 s, to scale |
     | `goal_radius` | float or None | `None` | distance at which the goal is reached [m]; None: 1 m, to scale |
     | `max_episode_steps` | int | `500` | truncates; -1 never |

@@ -164,10 +164,8 @@ class CorridorCentralEnv(SingleWorld):
     | `starts` | (robots, 2) or None | `None` | x, y [m] in place of `places`; with `goals` |
     | `goals` | (robots, 2) or None | `None` | x, y [m] |
     | `action` | str | `"continuous"` | or `"discrete"` |
-    | `radius` | float | `0.105` | of every robot [m] |
-    | `beams` | int | `36` | of every robot's lidar |
-    | `lidar_range` | float | `3.5` | [m] |
-    | `lidar_noise` | float | `0.01` | standard deviation of a range [m] |
+    | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: TurtleBot3 Burger |
+    | `lidar` | str, dict or spec | `None` | the same with a ``LidarSpec``; None: 36 beams of 3.5 m, 1 cm of noise |
     | `neighbours` | int | `0` | how many of the nearest robots tell where they are and how they move |
     | `motion_noise` | float | `1.0` | factor on the noise of the wheels; 0: they obey |
     | `localization_noise` | float | `0.02` | standard deviation of the poses in the info [m], [rad] |
