@@ -15,6 +15,7 @@ from lidarena.base.terminal import make_output_printable
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
+from lidarena.world.physics import build_space
 
 PLANS = ("env1", "env2", "env3", "env4", "willow_lobby", "turtlebot3_world", "aws_small_house", "willow")
 BEAMS, REACH = 36, 3.5
@@ -27,16 +28,6 @@ def free_poses(plan: Floorplan, count: int, rng: np.random.Generator) -> NDArray
     chosen = cells[rng.integers(len(cells), size=count)][:, ::-1] + rng.uniform(0.25, 0.75, (count, 2))
     headings = rng.uniform(-np.pi, np.pi, (count, 1))
     return np.hstack([raster.origin + chosen * raster.resolution, headings])[:, None]
-
-
-def pymunk_space(plan: Floorplan) -> pymunk.Space:
-    """The same walls as pymunk shapes."""
-    space = pymunk.Space()
-    for x1, y1, x2, y2 in plan.edges.tolist():
-        space.add(pymunk.Segment(space.static_body, (x1, y1), (x2, y2), 0.0))
-    for x, y, radius in plan.circles.tolist():
-        space.add(pymunk.Circle(space.static_body, radius, (x, y)))
-    return space
 
 
 def pymunk_ranges(space: pymunk.Space, poses: NDArray[np.float64], beams: int) -> NDArray[np.float64]:
@@ -76,7 +67,7 @@ def main() -> None:
     worst = 0.0
     for name in PLANS:
         plan = load_floorplan(name)
-        poses, space = free_poses(plan, count, rng), pymunk_space(plan)
+        poses, space = free_poses(plan, count, rng), build_space(plan)
         ours = Lidar([plan], LidarSpec(beams=BEAMS)).cast(poses, np.zeros(count, np.int64))[:, 0]
         begin = time.perf_counter()
         theirs = pymunk_ranges(space, poses, BEAMS)

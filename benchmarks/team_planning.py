@@ -19,6 +19,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.terminal import make_output_printable
 from lidarena.evaluation.team_planning.team_experiment import SHIPPED
+from lidarena.evaluation.team_planning.team_problems import Problem
 from lidarena.planning import TeamPlan, plan_team, validate_plan
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
@@ -30,16 +31,6 @@ from lidarena.world.team_drawings import team_places
 MAPF = ("random-32-32-20", "room-32-32-4", "warehouse-10-20-10-2-1")
 LIMITS = {6: 0.1, 20: 0.1, 50: 0.5}
 ROBOT = 0.2  # radius [m]
-
-
-class Problem(NamedTuple):
-    """A team's problem; radius in cells."""
-
-    blocked: NDArray[np.bool_]
-    starts: NDArray[np.int64]
-    goals: NDArray[np.int64]
-    radius: float
-    connectivity: int = 8
 
 
 class Answer(NamedTuple):

@@ -9,11 +9,11 @@ import safetensors.torch
 import torch
 from gymnasium import spaces
 
-from lidarena.agents import TrainingStopped, load, train
+from lidarena.agents import load, train
 from lidarena.agents.observation_normalizer import CLIP, ObservationNormalizer, keys_to_normalize
 from lidarena.agents.policy_file import read_policy
 from lidarena.base.errors import ConfigError, PolicyFileError
-from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
+from tests.agents.training_cases import curve, equal, small, stopped_and_resumed, weights
 
 ON = "normalize_observation=true"
 MEMORY = ("algorithm=SAC", "ppo=", "sac={buffer_size: 300, learning_starts: 30, batch_size: 16}", "total_steps=256")
@@ -30,12 +30,7 @@ MEMORY = ("algorithm=SAC", "ppo=", "sac={buffer_size: 300, learning_starts: 30, 
 def test_a_stopped_training_goes_on_to_the_bit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, overrides: tuple[str, ...]
 ) -> None:
-    straight = train(small(tmp_path / "straight", *overrides), progress=False)
-    with monkeypatch.context() as patch:
-        press_ctrl_c(patch, at_step=150)
-        with pytest.raises(TrainingStopped):
-            train(small(tmp_path / "stopped", *overrides), progress=False)
-    resumed = train(resume=tmp_path / "stopped", progress=False)
+    resumed, straight = stopped_and_resumed(tmp_path, monkeypatch, overrides)
     assert equal(weights(resumed), weights(straight))
     assert (resumed / "policy.safetensors").read_bytes() == (straight / "policy.safetensors").read_bytes()
     assert "algorithm=SAC" in overrides or curve(resumed) == curve(straight)

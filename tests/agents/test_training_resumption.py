@@ -1,14 +1,13 @@
 import json
 from pathlib import Path
 
-import numpy as np
 import pytest
 import yaml
 from tensorboard.backend.event_processing.event_accumulator import EventAccumulator
 
 from lidarena.agents import TrainingStopped, train
 from lidarena.agents.run_folder import config_of
-from tests.agents.training_cases import curve, equal, press_ctrl_c, small, weights
+from tests.agents.training_cases import curve, equal, press_ctrl_c, small, stopped_and_resumed, weights
 
 CASES = [
     (),
@@ -23,13 +22,7 @@ CASES = [
 def test_a_stopped_training_goes_on_to_the_bit(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, overrides: tuple[str, ...]
 ) -> None:
-    straight = train(small(tmp_path / "straight", *overrides), progress=False)
-    with monkeypatch.context() as patch:
-        press_ctrl_c(patch, at_step=150)
-        with pytest.raises(TrainingStopped):
-            train(small(tmp_path / "stopped", *overrides), progress=False)
-    np.random.seed(99)  # another process would have other generators
-    resumed = train(resume=tmp_path / "stopped", progress=False)
+    resumed, straight = stopped_and_resumed(tmp_path, monkeypatch, overrides)
     assert equal(weights(resumed), weights(straight))
     assert curve(resumed) == curve(straight)
     assert (resumed / "policy.safetensors").read_bytes() == (straight / "policy.safetensors").read_bytes()

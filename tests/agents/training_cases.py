@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 import safetensors.torch
 
-from lidarena.agents import TrainingConfig, training_run
+from lidarena.agents import TrainingConfig, TrainingStopped, train, training_run
 from lidarena.base.yaml_config import check_config
 from tests.agents.fake_batch import ID
 
@@ -32,6 +32,17 @@ def weights(folder: Path) -> dict[str, Any]:
     """Everything that a training has learned, Adam's moments included."""
     last = max((folder / "checkpoints").iterdir())
     return {key: value.numpy() for key, value in safetensors.torch.load_file(last / "model.safetensors").items()}
+
+
+def stopped_and_resumed(folder: Path, monkeypatch: pytest.MonkeyPatch, overrides: tuple[str, ...]) -> tuple[Path, Path]:
+    """A training that is stopped after a while and goes on, and the same one left alone."""
+    straight = train(small(folder / "straight", *overrides), progress=False)
+    with monkeypatch.context() as patch:
+        press_ctrl_c(patch, at_step=150)
+        with pytest.raises(TrainingStopped):
+            train(small(folder / "stopped", *overrides), progress=False)
+    np.random.seed(99)  # another process would have other generators
+    return train(resume=folder / "stopped", progress=False), straight
 
 
 def equal(one: dict[str, Any], other: dict[str, Any]) -> bool:

@@ -25,6 +25,9 @@ RECIPROCAL, SHIFTED, BUMP = 0.0, 1.0, 2.0
 """Shapes of a fill: eq. 15 as printed; the same less its value at the rim; a Gaussian."""
 
 
+Rows = NDArray[np.float64]
+
+
 class Obstacles(NamedTuple):
     """What a robot must not touch."""
 
@@ -230,14 +233,7 @@ def force_at(
 
 
 @leaf
-def potentials(
-    points: NDArray[np.float64],
-    goal: NDArray[np.float64],
-    obstacles: Obstacles,
-    field: Field,
-    fills: NDArray[np.float64],
-    values: NDArray[np.float64],
-) -> None:
+def potentials(points: Rows, goal: Rows, obstacles: Obstacles, field: Field, fills: Rows, values: Rows) -> None:
     """Write the potential at ``points`` (M, 2) into ``values`` (M,)."""
     for i in range(points.shape[0]):
         x, y = points[i, 0], points[i, 1]
@@ -245,14 +241,7 @@ def potentials(
 
 
 @leaf
-def forces(
-    points: NDArray[np.float64],
-    goal: NDArray[np.float64],
-    obstacles: Obstacles,
-    field: Field,
-    fills: NDArray[np.float64],
-    values: NDArray[np.float64],
-) -> None:
+def forces(points: Rows, goal: Rows, obstacles: Obstacles, field: Field, fills: Rows, values: Rows) -> None:
     """Write the force at ``points`` (M, 2) into ``values`` (M, 2)."""
     for i in range(points.shape[0]):
         x, y = points[i, 0], points[i, 1]

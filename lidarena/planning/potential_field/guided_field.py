@@ -127,14 +127,8 @@ def plan_guided_path(
 ) -> PathResult:
     """Plan a smooth path by a potential field that is led by A*'s path.
 
-    Args:
-        circles: (K, 3) x, y, radius (m); K = 0 gives a straight line.
-        start: x, y (m).
-        goal: x, y (m).
-        robot_radius: Radius of the robot (m).
-        bounds: x_min, y_min, x_max, y_max of the room (m); None: no walls.
-        **overrides: Attributes of :class:`FieldParameters` over its preset
-            ``robust``.
+    Its arguments are those of :func:`~lidarena.planning.potential_field.potential_field.plan_path`, with the preset
+    ``robust``.
 
     Returns:
         The result; ``path`` is the smooth one, ``smoothed`` the corners that the regression search leaves of it.

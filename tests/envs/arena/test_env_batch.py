@@ -10,7 +10,8 @@ from gymnasium.error import ResetNeeded
 import lidarena  # noqa: F401
 from lidarena.base.errors import ConfigError
 from lidarena.envs import BatchedArena
-from tests.envs.exploration.test_env_batch import raw, world_of
+from tests.envs import batch_runs
+from tests.envs.batch_runs import raw
 
 STEPS = 120
 KEYWORDS: list[dict[str, Any]] = [
@@ -34,33 +35,14 @@ def actions_for(world: int, discrete: bool) -> np.ndarray:
 
 def alone(seed: int, keywords: dict[str, Any]) -> tuple[list[bytes], int]:
     env = gym.make("lidarena/Arena-v0", max_episode_steps=70, **keywords)
-    observation, info = env.reset(seed=seed)
-    record, collisions = [raw(observation) + raw(info)], 0
-    for action in actions_for(seed, "action" in keywords):
-        observation, reward, terminated, truncated, info = env.step(action)
-        ended = b""
-        if terminated or truncated:
-            collisions += info["collision"]
-            ended = raw(observation) + raw(info)
-            observation, info = env.reset()
-        record.append(raw(observation) + raw(info) + ended + raw([reward, terminated, truncated]))
-    return record, collisions
+    record, endings = batch_runs.alone(env, actions_for(seed, "action" in keywords), seed)
+    return record, sum(bool(info["collision"]) for info in endings)
 
 
 def together(count: int, keywords: dict[str, Any]) -> list[list[bytes]]:
     batch = gym.make_vec("lidarena/Arena-v0", count, "vector_entry_point", max_episode_steps=70, **keywords)
-    observations, infos = batch.reset(seed=0)
-    records = [[raw(observations[k]) + raw(world_of(infos, k))] for k in range(count)]
     table = np.stack([actions_for(k, "action" in keywords) for k in range(count)], axis=1)
-    for actions in table:
-        observations, rewards, terminated, truncated, infos = batch.step(actions)
-        for k in range(count):
-            ended = b""
-            if terminated[k] or truncated[k]:
-                ended = raw(infos["final_obs"][k]) + raw(world_of(infos["final_info"], k))
-            end = raw([rewards[k], terminated[k], truncated[k]])
-            records[k].append(raw(observations[k]) + raw(world_of(infos, k)) + ended + end)
-    return records
+    return batch_runs.together(batch, table)
 
 
 @pytest.mark.parametrize("keywords", KEYWORDS, ids=["random", "mixed", "truth"])

@@ -11,7 +11,7 @@ from lidarena.base.errors import ConfigError, MapError
 from lidarena.envs import ArenaEnv, BatchedArena, corridor_v0
 from lidarena.world.arenas import Arena
 from lidarena.world.floorplan import Floorplan
-from tests.envs.exploration.test_env_batch import raw
+from tests.envs.batch_runs import raw
 from tests.world.test_plan_generators import HERE, room
 
 

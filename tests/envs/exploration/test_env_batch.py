@@ -11,7 +11,8 @@ import lidarena  # noqa: F401
 from lidarena.base.errors import ConfigError
 from lidarena.base.generator_state import generator_from_words, generator_words
 from lidarena.envs import BatchedExploration, set_num_threads
-from lidarena.envs.infos import row_of
+from tests.envs import batch_runs
+from tests.envs.batch_runs import raw
 
 STEPS = 45
 KEYWORDS: list[dict[str, Any]] = [
@@ -27,47 +28,15 @@ def actions_for(world: int, discrete: bool) -> np.ndarray:
     return rng.integers(0, 3, STEPS) if discrete else rng.uniform(-1, 1, (STEPS, 2)).astype(np.float32)
 
 
-def raw(value: Any) -> bytes:
-    if isinstance(value, dict):
-        return b"".join(raw(value[key]) for key in sorted(value))
-    return np.asarray(value).tobytes()
-
-
 def alone(seed: int, keywords: dict[str, Any]) -> list[bytes]:
     env = gym.make("lidarena/Env1-v0", max_episode_steps=20, **keywords)
-    observation, info = env.reset(seed=seed)
-    record = [raw(observation) + raw(info)]
-    for action in actions_for(seed, keywords.get("action") != "continuous"):
-        observation, reward, terminated, truncated, info = env.step(action)
-        ended = b""
-        if terminated or truncated:
-            info.pop("map")
-            ended = raw(observation) + raw(info)
-            observation, info = env.reset()
-        record.append(raw(observation) + raw(info) + ended + raw([reward, terminated, truncated]))
-    return record
-
-
-def world_of(infos: dict[str, Any], k: int) -> dict[str, Any]:
-    own = {name: value for name, value in infos.items() if not name.startswith(("_", "final"))}
-    return {name: world_of(v, k) if isinstance(v, dict) else v[k] for name, v in own.items()}
+    return batch_runs.alone(env, actions_for(seed, keywords.get("action") != "continuous"), seed)[0]
 
 
 def together(count: int, keywords: dict[str, Any]) -> list[list[bytes]]:
     batch = gym.make_vec("lidarena/Env1-v0", count, "vector_entry_point", max_episode_steps=20, **keywords)
-    observations, infos = batch.reset(seed=0)
-    records = [[raw(row_of(observations, k)) + raw(world_of(infos, k))] for k in range(count)]
     discrete = keywords.get("action") != "continuous"
-    table = np.stack([actions_for(k, discrete) for k in range(count)], axis=1)
-    for actions in table:
-        observations, rewards, terminated, truncated, infos = batch.step(actions)
-        for k in range(count):
-            ended = b""
-            if terminated[k] or truncated[k]:
-                ended = raw(infos["final_obs"][k]) + raw(world_of(infos["final_info"], k))
-            end = raw([rewards[k], terminated[k], truncated[k]])
-            records[k].append(raw(row_of(observations, k)) + raw(world_of(infos, k)) + ended + end)
-    return records
+    return batch_runs.together(batch, np.stack([actions_for(k, discrete) for k in range(count)], axis=1))
 
 
 @pytest.mark.parametrize("keywords", KEYWORDS, ids=["default", "map", "truth", "odometry"])

@@ -15,7 +15,7 @@ from lidarena.envs.exploration.coverage import measure_coverage
 from lidarena.envs.infos import row_of
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
-from tests.envs.exploration.test_env_batch import raw, world_of
+from tests.envs.batch_runs import raw, world_of
 from tests.world.test_plan_generators import HERE, Rooms, growing, room
 
 STEPS = 40
