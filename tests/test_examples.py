@@ -15,6 +15,7 @@ EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PROMISED = {
     "own_environment": r"the trained agent needs 10 steps",
     "own_family": r"straight: \d\d",
+    "own_lidar": r"exploration: [6-9]\d%.*False\narena: .* True\ncorridor: .*683 beams",
     "own_map": r"hall 2 with \d pillars: [5-9]\d% mapped",
     "own_policy": r"room seeker: [3-9]\d% of Env-1 mapped",
     "own_slam": r"frontier explored [4-9]\d%",

@@ -111,8 +111,13 @@ def test_the_same_shape_is_not_the_same_observation() -> None:
 def test_keywords_that_are_only_of_the_training_do_not_matter() -> None:
     env = gym.make("lidarena/Arena-v0", **ARENA, reward={"progress": 2.0}, density=0.1)
     learned = agents.load("pretrained:arena")
-    learned.env_keywords = {**learned.env_keywords, "arena": "barn", "path": "/not/here", "speed": -3}
+    learned.env_keywords = {**learned.env_keywords, "arena": "barn", "path": "/not/here", "robot": {"max_speed": -3}}
     assert agents.ready(learned, env) is learned
+
+
+def test_arenas_of_another_scale_and_their_lidar_are_the_same_to_an_agent() -> None:
+    env = gym.make("lidarena/Arena-v0", arena="env2", start=(1.0, 1.0), goal=(5.0, 6.0), **ARENA)
+    assert agents.ready(agents.load("pretrained:arena"), env) is not None
 
 
 def test_an_agent_of_a_strangers_environment(tmp_path: Path) -> None:
