@@ -28,7 +28,7 @@ def test_a_row_holds_what_is_known_and_leaves_the_rest_empty(tmp_path: Path) -> 
     write(tmp_path, 8, **{"rollout/ep_rew_mean": 1.25, "train/value_loss": math.nan, "own/number": 3.0})
     (row,) = rows(tmp_path)
     assert list(row) == list(COLUMNS)
-    assert (row["step"], row["seconds"], row["episode_return"]) == ("8", "4.0", "1.25")
+    assert (row["step"], float(row["seconds"]), row["episode_return"]) == ("8", 4.0, "1.25")
     assert row["value_loss"] == row["completeness"] == ""
 
 

@@ -29,7 +29,7 @@ def test_walls_are_mapped_where_they_are() -> None:
         info = env.step(0)[4]
     occupied = np.argwhere(info["map"] >= 65)
     assert len(occupied) > 20
-    points = info["map_origin"] + (occupied[:, ::-1] + 0.5) * 0.05
+    points = info["origin"] + (occupied[:, ::-1] + 0.5) * 0.05
     plan = env.unwrapped.episodes.core.plans[0]
     raster = plan.raster(0.05)
     cells = np.floor((points - raster.origin) / 0.05).astype(int)

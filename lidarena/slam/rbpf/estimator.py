@@ -58,6 +58,7 @@ class ParticleFilterEstimator(BatchEstimator):
     ) -> None:
         """Start one filter anew; the next scan is its first."""
         self.filters.start(world, plan, origin, pose)
+        self.filters.state.estimate[world] = pose
 
     def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
         """Read the sensors and run the filters of world after world."""
