@@ -136,15 +136,10 @@ STILL_TESTED_ELSEWHERE = {
     "lidarena/agents/replay_memory.py",
     "lidarena/agents/sync_worlds.py",
     "lidarena/envs/arena/episodes.py",
-    "lidarena/envs/arena/rewards.py",
     "lidarena/envs/arena/state.py",
-    "lidarena/envs/corridor/drawing.py",
     "lidarena/envs/corridor/options.py",
-    "lidarena/envs/corridor/rewards.py",
-    "lidarena/envs/corridor/shared_env.py",
     "lidarena/envs/exploration/episodes.py",
     "lidarena/envs/exploration/options.py",
-    "lidarena/envs/exploration/rendering.py",
     "lidarena/evaluation/trace.py",
 }
 """Modules that only tests of others go through; take them out as they get their own."""
