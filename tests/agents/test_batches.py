@@ -12,7 +12,7 @@ from lidarena.agents.batches import make_batch
 from lidarena.agents.sync_worlds import SyncWorlds
 from lidarena.agents.training_config import EnvironmentConfig
 from tests.agents.fake_batch import RestorableLineBatch
-from tests.agents.training_cases import curve, equal, small, weights
+from tests.agents.training_cases import curve, small
 
 WALK, RESTORABLE = (f"tests.agents.fake_single:stranger/{name}-v0" for name in ("Walk", "Restorable"))
 
@@ -46,17 +46,6 @@ def test_strangers_train_and_lose_no_more_than_their_episodes(
     assert bool(rows[-1]["success_rate"]) == bool(rows[-1]["collision_rate"]) == (env_id == WALK)
     policy = load(folder)
     assert policy.act(policy.observation_space.sample()) in (0, 1)
-
-
-def test_single_worlds_that_can_be_written_down_go_on_to_the_bit(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    env = f"env.id={RESTORABLE}"
-    straight = train(small(tmp_path / "straight", env, "total_steps=256"))
-    stopped = train(small(tmp_path / "stopped", env, "total_steps=128"))
-    resumed = train(small(stopped, env, "total_steps=256"), resume=stopped)
-    assert equal(weights(resumed), weights(straight)) and curve(resumed) == curve(straight)
-    assert "lose" not in capsys.readouterr().out
 
 
 def test_masks_of_single_worlds_reach_the_learner(tmp_path: Path) -> None:

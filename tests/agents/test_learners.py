@@ -9,29 +9,9 @@ import pytest
 from lidarena.agents import TrainingStopped, load, train
 from lidarena.agents.batches import make_batch
 from lidarena.agents.learners import make_model
-from lidarena.agents.training_config import EnvironmentConfig, TrainingConfig
-from lidarena.base.errors import ConfigError, PolicyFileError
-from lidarena.base.yaml_config import check_config
-from tests.agents.fake_batch import ID
+from lidarena.base.errors import PolicyFileError
+from tests.agents.learner_cases import CASES, CONTINUOUS, small
 from tests.agents.training_cases import equal, press_ctrl_c, weights
-
-MASKED = "tests.agents.fake_batch:fakebatch/Masked-v0"
-CONTINUOUS = "env.keywords={action: continuous}"
-ROLLOUT = "{n_steps: 16, batch_size: 32, n_epochs: 2}"
-MEMORY = "buffer_size: 200, learning_starts: 30, batch_size: 16"
-CASES = {
-    "MaskablePPO": (f"env.id={MASKED}", f"maskable_ppo={ROLLOUT}"),
-    "RecurrentPPO": ("recurrent_ppo={n_steps: 16, batch_size: 32, n_epochs: 2, lstm_hidden_size: 8}",),
-    "QRDQN": (f"qrdqn={{{MEMORY}, train_freq: 2, n_quantiles: 8, target_update_interval: 20}}",),
-    "SAC": (CONTINUOUS, f"sac={{{MEMORY}}}"),
-    "TQC": (CONTINUOUS, f"tqc={{{MEMORY}, n_quantiles: 5, ent_coef: 0.1}}"),
-}
-
-
-def small(out: Path, algorithm: str, *overrides: str) -> TrainingConfig:
-    content = {"env": {"id": ID}, "algorithm": algorithm, "num_envs": 4, "checkpoint_every": 1000, "out": str(out)}
-    case = ("total_steps=256", "policy.net_arch=[8]", *CASES[algorithm], *overrides)
-    return check_config(content, TrainingConfig, case)
 
 
 @pytest.fixture(scope="module", params=CASES)
@@ -123,47 +103,3 @@ def test_masks_come_from_the_environment_or_the_info(tmp_path: Path) -> None:
 
     with pytest.raises(PolicyFileError, match=r"this environment has no action_masks\(\)"):
         load(folder, gym.make_vec("fakebatch/Line-v0", 2, "vector_entry_point"))
-
-
-def test_a_memory_that_is_too_large_is_left_out_and_told(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
-) -> None:
-    monkeypatch.setattr("lidarena.agents.replay_memory.LARGEST", 100)
-    folder = train(small(tmp_path / "run", "SAC"), progress=False)
-    assert not list(folder.rglob("memory.npz"))
-    train(small(folder, "SAC", "total_steps=320"), resume=folder)
-    assert "lost:     the memory of transitions" in capsys.readouterr().out
-    assert load(folder).training["steps"] == 320
-
-
-def test_a_memory_that_went_missing_is_refused(tmp_path: Path) -> None:
-    folder = train(small(tmp_path / "run", "SAC"), progress=False)
-    next(folder.rglob("memory.npz")).unlink()
-    with pytest.raises(ConfigError, match=r"lacks memory\.npz"):
-        train(small(folder, "SAC", "total_steps=320"), resume=folder, progress=False)
-
-
-@pytest.mark.parametrize(
-    ("algorithm", "override", "message"),
-    [
-        ("SAC", "env.keywords={}", r"takes actions of Box, but .* has Discrete\(3\); allowed here: MaskablePPO, PPO"),
-        ("QRDQN", CONTINUOUS, r"takes actions of Discrete, .*; allowed here: PPO, RecurrentPPO, SAC, TQC"),
-        ("MaskablePPO", f"env.id={ID}", r"has no action_masks\(\); allowed here: PPO"),
-        ("MaskablePPO", "policy=CandidatePolicy", "it is for PPO only"),
-        ("SAC", "sac.n_steps=3", None),
-        ("QRDQN", "env.keywords={observation: map}", None),
-    ],
-)
-def test_misfits(tmp_path: Path, algorithm: str, override: str, message: str | None) -> None:
-    if message is None:
-        assert load(train(small(tmp_path / "run", algorithm, override, "total_steps=64"), progress=False))
-        return
-    with pytest.raises(ConfigError, match=message) as refusal:
-        train(small(tmp_path / "run", algorithm, override), progress=False)
-    assert "\n" not in str(refusal.value) and not list(tmp_path.iterdir())
-
-
-def test_actions_that_do_not_begin_at_0_are_refused() -> None:
-    env = EnvironmentConfig(id="tests.agents.fake_single:stranger/Walk-v0", keywords={"start": 1})
-    with pytest.raises(ConfigError, match="only those that begin at 0"):
-        make_model(TrainingConfig(env=env), make_batch(env, 2))

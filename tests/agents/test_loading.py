@@ -4,7 +4,6 @@ from pathlib import Path
 from typing import Any
 
 import gymnasium as gym
-import numpy as np
 import pytest
 
 from lidarena import agents
@@ -55,71 +54,6 @@ def test_wrappers_are_looked_through() -> None:
         agents.load("pretrained:arena", Own(gym.make("lidarena/Arena-v0", action="discrete")))
 
 
-@pytest.mark.parametrize(
-    ("name", "make", "message"),
-    [
-        (
-            "arena",
-            lambda: gym.make("lidarena/Arena-v0", action="discrete"),
-            "'pretrained:arena' was trained for arena environments with observation 'proximity', but this environment "
-            "has observation 'ranges'; make it with observation='proximity'",
-        ),
-        (
-            "arena",
-            lambda: gym.make("lidarena/Arena-v0"),
-            "with observation 'proximity' and action 'discrete', but this environment has observation 'ranges' and "
-            "action 'continuous'; make it with observation='proximity', action='discrete'",
-        ),
-        (
-            "compass",
-            lambda: gym.make("lidarena/Env1-v0"),
-            "was trained for exploration environments with observation",
-        ),
-        (
-            "compass",
-            lambda: gym.make("lidarena/Arena-v0"),
-            "was trained for exploration environments, but this one is of the family 'arena'",
-        ),
-        (
-            "combined",
-            lambda: gym.make("lidarena/Arena-v0"),
-            "was trained for exploration environments, but this one is of the family 'arena'",
-        ),
-        (
-            "corridor",
-            lambda: corridor_v0.parallel_env(),
-            "with neighbours 2, but this environment has neighbours 0; make it with neighbours=2",
-        ),
-        ("arena", lambda: gym.make("CartPole-v1"), "but this environment has observations Box"),
-    ],
-)
-def test_a_misfit_is_told_in_one_sentence(name: str, make: Any, message: str) -> None:
-    with pytest.raises(PolicyFileError) as refusal:
-        agents.load(f"pretrained:{name}", make())
-    assert message in str(refusal.value) and "\n" not in str(refusal.value)
-
-
-def test_the_same_shape_is_not_the_same_observation() -> None:
-    env = gym.make("lidarena/Arena-v0", **ARENA)
-    learned = agents.load("pretrained:arena")
-    learned.env_keywords = {**learned.env_keywords, "observation": "ranges"}
-    assert learned.observation_space == env.observation_space
-    with pytest.raises(PolicyFileError, match="with observation 'ranges'"):
-        agents.ready(learned, env)
-
-
-def test_keywords_that_are_only_of_the_training_do_not_matter() -> None:
-    env = gym.make("lidarena/Arena-v0", **ARENA, reward={"progress": 2.0}, density=0.1)
-    learned = agents.load("pretrained:arena")
-    learned.env_keywords = {**learned.env_keywords, "arena": "barn", "path": "/not/here", "robot": {"max_speed": -3}}
-    assert agents.ready(learned, env) is learned
-
-
-def test_arenas_of_another_scale_and_their_lidar_are_the_same_to_an_agent() -> None:
-    env = gym.make("lidarena/Arena-v0", arena="env2", start=(1.0, 1.0), goal=(5.0, 6.0), **ARENA)
-    assert agents.ready(agents.load("pretrained:arena"), env) is not None
-
-
 def test_an_agent_of_a_strangers_environment(tmp_path: Path) -> None:
     env_id = "tests.agents.fake_single:stranger/Walk-v0"
     folder = agents.train(small(tmp_path / "run", f"env.id={env_id}", "total_steps=64"), progress=False)
@@ -129,15 +63,3 @@ def test_an_agent_of_a_strangers_environment(tmp_path: Path) -> None:
     assert policy.act(observation, info) in (0, 1)
     with pytest.raises(PolicyFileError, match="has observations Box"):
         agents.load(folder, gym.make("CartPole-v1"))
-
-
-def test_pictures_may_have_their_channels_last(tmp_path: Path) -> None:
-    from stable_baselines3 import PPO
-    from stable_baselines3.common.envs import FakeImageEnv
-
-    env = FakeImageEnv(screen_height=40, screen_width=48, n_channels=3, discrete=True)
-    model = PPO("CnnPolicy", env, n_steps=16, batch_size=16, n_epochs=1, seed=0)
-    agents.save_policy(model, tmp_path, "somewhere/Pictures-v0")
-    policy = agents.load(tmp_path, env)
-    picture = np.random.default_rng(0).integers(0, 255, (40, 48, 3)).astype(np.uint8)
-    assert policy.act(picture, {}) == model.predict(picture, deterministic=True)[0]
