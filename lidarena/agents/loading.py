@@ -3,8 +3,8 @@
 from pathlib import Path
 from typing import Any, overload
 
-from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.compatibility import check_family, check_options, check_spaces, fits
+from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.policy_file import read_policy
 from lidarena.base.import_names import import_named
 from lidarena.baselines.policy import Policy

@@ -3,7 +3,7 @@
 import math
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import fields
+from dataclasses import dataclass, field, fields
 from inspect import Parameter, Signature, signature
 from typing import Any, TypeVar, get_type_hints
 
@@ -82,6 +82,55 @@ def check_switch(name: str, value: Any) -> None:
     """
     if not isinstance(value, bool):
         raise ConfigError(f"{name} = {value!r} must be true or false")
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What keywords may be whose check is one of those above, by their names.
+
+    Attributes:
+        choices: Of which values.
+        ranges: Least and greatest number; None is allowed too where it is the default.
+        whole: Least and greatest whole number.
+        switches: True or False.
+    """
+
+    choices: Mapping[str, Sequence[str | None]] = field(default_factory=dict)
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    whole: Mapping[str, tuple[float, float]] = field(default_factory=dict)
+    switches: Sequence[str] = ()
+
+
+Options = TypeVar("Options")
+
+
+def options_of(kind: type[Options], what: str, keywords: Mapping[str, Any], limits: Limits) -> Options:
+    """Make a dataclass of keywords, its ``max_episode_steps`` the usual one where None is given.
+
+    Args:
+        kind: The dataclass.
+        what: What messages call the environment.
+        keywords: Those that were given.
+        limits: What they may be.
+
+    Raises:
+        ConfigError: An unknown keyword, or a value out of its limits.
+    """
+    known: Any = kind
+    check_names(what, keywords, [one.name for one in fields(known)])
+    given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
+    options = kind(**given)
+    optional = {one.name for one in fields(known) if one.default is None}
+    for name, allowed in limits.choices.items():
+        check_choice(name, getattr(options, name), allowed)
+    for whole, ranges in ((False, limits.ranges), (True, limits.whole)):
+        for name, (low, high) in ranges.items():
+            if getattr(options, name) is not None or name not in optional:
+                check_range(name, getattr(options, name), low, high, whole)
+    for name in limits.switches:
+        check_switch(name, getattr(options, name))
+    check_step_limit(getattr(options, "max_episode_steps", -1))
+    return options
 
 
 Function = TypeVar("Function", bound=Callable[..., Any])

@@ -1,11 +1,12 @@
 import math
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import pytest
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_switch
+from lidarena.base.keyword_checks import Limits, check_choice, check_names, check_range, check_switch, options_of
 from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv
 
 
@@ -59,3 +60,41 @@ def test_numpys_numbers_are_numbers_in_dictionaries_too() -> None:
     env = ExplorationEnv(map="env1", reward={"path": np.float32(2), "collision": np.int64(3)})
     env.reset(seed=0)
     assert env.step(0)[4]["reward_terms"]["path"] < 0.0
+
+
+@dataclass(frozen=True)
+class Dish:
+    """Keywords of an environment that there is not."""
+
+    kind: str = "soup"
+    salt: float = 1.0
+    pepper: float | None = None
+    spoons: int = 2
+    hot: bool = True
+    max_episode_steps: int = 100
+
+
+LIMITS = Limits({"kind": ("soup", "salad")}, {"salt": (0.0, 2.0), "pepper": (0.0, 1.0)}, {"spoons": (1, 9)}, ("hot",))
+
+
+def test_keywords_make_the_options_and_none_of_the_rest_is_touched() -> None:
+    options = options_of(Dish, "a dish", {"salt": np.float64(0.5), "max_episode_steps": None}, LIMITS)
+    assert options == Dish(salt=0.5) and type(options.salt) is float
+
+
+@pytest.mark.parametrize(
+    ("keywords", "says"),
+    [
+        ({"slat": 1.0}, "a dish got an unexpected keyword argument 'slat'; did you mean 'salt'"),
+        ({"kind": "salat"}, "did you mean 'salad'"),
+        ({"salt": 3.0}, "salt = 3.0 is out of range"),
+        ({"salt": None}, "salt = None is out of range"),
+        ({"pepper": 1.5}, "pepper = 1.5"),
+        ({"spoons": 1.5}, "spoons = 1.5 must be a whole number"),
+        ({"hot": 1}, "hot = 1 must be true or false"),
+        ({"max_episode_steps": 0}, "or -1 for never"),
+    ],
+)
+def test_keywords_beyond_their_limits_are_refused(keywords: dict[str, Any], says: str) -> None:
+    with pytest.raises(ConfigError, match=says):
+        options_of(Dish, "a dish", keywords, LIMITS)

@@ -5,8 +5,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.agents.compatibility import check_options
+from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.base.errors import PolicyFileError
 from lidarena.baselines.corridor.robot_interface import Fleet
 from lidarena.envs.corridor.parallel_env import agent_name

@@ -8,7 +8,7 @@ import numpy as np
 
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
+from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
 from lidarena.envs.arena.rewards import REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
@@ -23,21 +23,24 @@ ArenaSpec = str | Arena | Floorplan | ArenaGenerator
 OBSERVATIONS = ("ranges", "proximity")
 _WEIGHTS = {f"{term}_weight": term for term in REWARDS.names}
 """Keywords of version 0.1, and the terms that they weigh."""
-_CHOICES = {
-    "pick": ("random", "by_seed"),
-    "action": ("continuous", "discrete"),
-    "knowledge": ("map", "lidar"),
-    "field": ("robust", "paper", "traditional"),
-    "render_mode": (None, "rgb_array"),
-}
 _EARLIER = {
     "beams": ("lidar", "beams"),
     "max_range": ("lidar", "max_range"),
     "lidar_noise": ("lidar", "noise"),
     "speed": ("robot", "max_speed"),
 }
-_OPTIONAL_RANGES = {"decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)}
-_WHOLE = {"arenas": (1, 10**9)}
+_LIMITS = Limits(
+    choices={
+        "pick": ("random", "by_seed"),
+        "action": ("continuous", "discrete"),
+        "knowledge": ("map", "lidar"),
+        "field": ("robust", "paper", "traditional"),
+        "render_mode": (None, "rgb_array"),
+    },
+    ranges={"decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)},
+    whole={"arenas": (1, 10**9)},
+    switches=("expose_truth", "solvable"),
+)
 
 
 class ToScale(LidarSpec):
@@ -153,19 +156,7 @@ class ArenaOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
         keywords = modern_keywords(keywords)
-        check_names("an arena environment", keywords, [field.name for field in fields(cls)])
-        given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
-        options = cls(**given)
-        for name, allowed in _CHOICES.items():
-            check_choice(name, getattr(options, name), allowed)
-        for name, (low, high) in _OPTIONAL_RANGES.items():
-            if getattr(options, name) is not None:
-                check_range(name, getattr(options, name), low, high)
-        for name, (low, high) in _WHOLE.items():
-            check_range(name, getattr(options, name), low, high, whole=True)
-        check_step_limit(options.max_episode_steps)
-        check_switch("expose_truth", options.expose_truth)
-        check_switch("solvable", options.solvable)
+        options, given = options_of(cls, "an arena environment", keywords, _LIMITS), plain(keywords)
         choose_reward(options.reward, REWARDS)
         choose_observer(options.observation, OBSERVATIONS)
         options._check_arenas()

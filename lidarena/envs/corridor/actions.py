@@ -6,8 +6,7 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.errors import ActionError
-from lidarena.envs.action_bounds import within_bounds
+from lidarena.envs.action_parsing import choices_of, shares_of
 from lidarena.envs.corridor.options import ROBOT
 from lidarena.world.robots import RobotSpec
 
@@ -36,24 +35,11 @@ def commands_of(kind: str, actions: Any, count: int, robot: RobotSpec = ROBOT) -
     Raises:
         ActionError: An action that is NaN, out of range, or of the wrong shape or type.
     """
-    try:
-        values = np.asarray(actions)
-    except ValueError:
-        values = np.empty(0, object)
     if kind == "discrete":
         known = discrete_commands(robot)
-        if values.shape != (count,) or values.dtype.kind not in "iu":
-            raise ActionError(f"{_show(actions, count)} not one of the whole numbers 0 to {len(known) - 1}")
-        if ((values < 0) | (values >= len(known))).any():
-            words = ", ".join(f"{number} ({name})" for number, name in enumerate(NAMES[: len(known)]))
-            raise ActionError(f"{_show(actions, count)} out of range; {words} are allowed")
-        chosen: NDArray[np.float64] = known[values]
+        chosen: NDArray[np.float64] = known[choices_of(actions, count, len(known), NAMES)]
         return chosen
-    if values.shape != (count, 2) or values.dtype.kind not in "iuf":
-        raise ActionError(f"{_show(actions, count)} not a pair of numbers, speed and turn rate, from -1 to 1")
-    numbers = within_bounds(values.astype(np.float64))
-    if numbers is None:
-        raise ActionError(f"{_show(actions, count)} NaN or out of range; numbers from -1 to 1 are allowed")
+    numbers = shares_of(actions, count, ("speed", "turn rate"))
     if not robot.reverse:
         numbers[:, 0] = 0.5 * (numbers[:, 0] + 1.0)
     commands: NDArray[np.float64] = numbers * (robot.max_speed, robot.max_turn_rate)
@@ -77,10 +63,3 @@ def action_for(kind: str, speed: float, rate: float, robot: RobotSpec = ROBOT) -
     ahead = speed / top_speed / excess
     ahead = ahead if robot.reverse else 2.0 * ahead - 1.0
     return np.array([ahead, rate / top_rate / excess], np.float32).clip(-1.0, 1.0)
-
-
-def _show(actions: Any, count: int) -> str:
-    """The begin of a refusal: which action is (or actions are) wrong."""
-    one = count == 1 and np.ndim(actions) >= 1
-    text = repr(actions[0] if one else actions)
-    return f"action {text if len(text) < 80 else text[:77] + '...'} is"

@@ -1,12 +1,12 @@
 """Keywords of the multi-robot environments, checked at the border."""
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, suggest
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
+from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
 from lidarena.envs.corridor.rewards import REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
@@ -35,15 +35,18 @@ _EARLIER = {
     "lidar_range": ("lidar", "max_range"),
     "lidar_noise": ("lidar", "noise"),
 }
-_RANGES = {
-    "motion_noise": (0.0, 10.0),
-    "localization_noise": (0.0, 1.0),
-    "stall_rate": (0.0, 1.0),
-    "decision_period": (0.02, 1.0),
-    "goal_tolerance": (0.02, 1.0),
-}
-_WHOLE = {"robots": (1, MOST_ROBOTS), "neighbours": (0, MOST_ROBOTS)}
-_CHOICES = {"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")}
+_LIMITS = Limits(
+    choices={"action": ("continuous", "discrete"), "render_mode": (None, "rgb_array", "human")},
+    ranges={
+        "motion_noise": (0.0, 10.0),
+        "localization_noise": (0.0, 1.0),
+        "stall_rate": (0.0, 1.0),
+        "decision_period": (0.02, 1.0),
+        "goal_tolerance": (0.02, 1.0),
+    },
+    whole={"robots": (1, MOST_ROBOTS), "neighbours": (0, MOST_ROBOTS)},
+    switches=("collision_ends", "expose_truth"),
+)
 
 
 class CorridorKeywords(TypedDict, total=False):
@@ -139,15 +142,7 @@ class CorridorOptions:
             ConfigError: An unknown keyword, or a value out of range or of the wrong type.
         """
         keywords = modern_keywords(keywords)
-        check_names("a corridor environment", keywords, [field.name for field in fields(cls)])
-        given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
-        options = cls(**given)
-        for name, allowed in _CHOICES.items():
-            check_choice(name, getattr(options, name), allowed)
-        for name, (low, high) in _RANGES.items():
-            check_range(name, getattr(options, name), low, high)
-        for name, (least, most) in _WHOLE.items():
-            check_range(name, getattr(options, name), least, most, whole=True)
+        options, given = options_of(cls, "a corridor environment", keywords, _LIMITS), plain(keywords)
         choose_reward(options.reward, REWARDS)
         choose_observer(options.observation, OBSERVATIONS, boxes_only=True)
         options._check_rest()
@@ -158,9 +153,6 @@ class CorridorOptions:
         return replace(options, robot=robot, lidar=lidar)
 
     def _check_rest(self) -> None:
-        check_step_limit(self.max_episode_steps)
-        for name in ("collision_ends", "expose_truth"):
-            check_switch(name, getattr(self, name))
         if not isinstance(self.map, str | Floorplan) and not callable(self.map):
             raise ConfigError(f"map = {self.map!r} must be a floor plan's name, file or generator")
         if self.places is not None and (

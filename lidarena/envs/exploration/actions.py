@@ -6,11 +6,11 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.errors import ActionError
-from lidarena.envs.action_bounds import within_bounds
+from lidarena.envs.action_parsing import choices_of, shares_of
 from lidarena.envs.exploration.options import ROBOT
 from lidarena.world.robots import RobotSpec
 
+NAMES = ("forward", "left", "right")
 SHARES = np.array([(1.0, 0.0), (0.1, 0.3), (0.1, -0.3)])
 """DA-SLAM's forward, left and right, over the fastest speed and turn rate: 0.5 m/s; 0.05 m/s and 0.3 rad/s."""
 
@@ -34,17 +34,10 @@ def commands_of(kind: str, actions: Any, worlds: int, robot: RobotSpec = ROBOT) 
     Raises:
         ActionError: An action that is NaN, out of range, or of the wrong shape or type.
     """
-    values = np.asarray(actions)
     if kind == "discrete":
-        commands: NDArray[np.float64] = discrete_commands(robot)[_checked_numbers(actions, values, worlds)]
+        commands: NDArray[np.float64] = discrete_commands(robot)[choices_of(actions, worlds, len(SHARES), NAMES)]
         return commands
-    if values.shape != (worlds, 2) or values.dtype.kind not in "iuf":
-        raise ActionError(
-            f"action {_show(actions, worlds)} is not a pair of numbers, speed and turn rate, from -1 to 1"
-        )
-    numbers = within_bounds(values.astype(np.float64))
-    if numbers is None:
-        raise ActionError(f"action {_show(actions, worlds)} is NaN or out of range; numbers from -1 to 1 are allowed")
+    numbers = shares_of(actions, worlds, ("speed", "turn rate"))
     speeds = robot.max_speed * numbers[:, 0] if robot.reverse else 0.5 * robot.max_speed * (numbers[:, 0] + 1.0)
     return np.stack([speeds, robot.max_turn_rate * numbers[:, 1]], axis=1)
 
@@ -53,21 +46,3 @@ def box_action(robot: RobotSpec, speed: float, rate: float) -> NDArray[np.float3
     """The continuous action of a command: speed [m/s] and turn rate [rad/s] within the robot's limits."""
     ahead = speed / robot.max_speed if robot.reverse else speed / (0.5 * robot.max_speed) - 1.0
     return np.array([ahead, rate / robot.max_turn_rate], dtype=np.float32)
-
-
-def _checked_numbers(actions: Any, values: NDArray[Any], worlds: int) -> NDArray[Any]:
-    if values.shape != (worlds,) or values.dtype.kind not in "iu":
-        whole = values.shape == (worlds,) and values.dtype.kind == "f" and np.array_equal(values, values.round())
-        hint = "; convert it to an integer" if whole else ""
-        raise ActionError(f"action {_show(actions, worlds)} is not one of the whole numbers 0, 1, 2{hint}")
-    if ((values < 0) | (values >= len(SHARES))).any():
-        raise ActionError(
-            f"action {_show(actions, worlds)} is out of range; 0 (forward), 1 (left), 2 (right) are allowed"
-        )
-    return values
-
-
-def _show(actions: Any, worlds: int) -> str:
-    text = repr(actions[0]) if worlds == 1 and np.ndim(actions) >= 1 else repr(actions)
-    text = " ".join(text.split())  # NumPy breaks the lines of long arrays
-    return text if len(text) < 80 else text[:77] + "..."

@@ -2,13 +2,13 @@
 
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 from warnings import warn
 
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, MapError
-from lidarena.base.keyword_checks import check_choice, check_names, check_range, check_step_limit, check_switch, plain
+from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
 from lidarena.envs.exploration.rewards import CERTAIN_ENOUGH, ETA, REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward
@@ -20,10 +20,6 @@ from lidarena.world.load import MapSpec
 from lidarena.world.robots import RobotSpec, make_robot
 
 SlamSpec = str | Callable[..., Any] | Mapping[str, Any]
-_CHOICES = {
-    "action": ("discrete", "continuous"),
-    "render_mode": (None, "rgb_array"),
-}
 OBSERVATIONS = (
     "da_slam",
     "da_slam_entropy",
@@ -42,12 +38,17 @@ LIDAR = LidarSpec()
 _LEAST_SIGHT, _MOST_SIGHT = 0.3, 100.0
 """A lidar sees at least so much farther than a collision is, and no farther than the second [m]."""
 _EARLIER = {"lidar_noise": ("lidar", "noise"), "collision_distance": ("robot", "collision_distance")}
-_RANGES = {
-    "odometry_noise": (0.0, 100.0),
-    "decision_period": (0.01, 2.0),
-    "eta": (1e-12, 1e6),
-    "certain_enough": (1e-12, 1e6),
-}
+_LIMITS = Limits(
+    choices={"action": ("discrete", "continuous"), "render_mode": (None, "rgb_array")},
+    ranges={
+        "odometry_noise": (0.0, 100.0),
+        "decision_period": (0.01, 2.0),
+        "eta": (1e-12, 1e6),
+        "certain_enough": (1e-12, 1e6),
+        "patience": (0.01, 1e9),
+    },
+    switches=("expose_truth",),
+)
 
 
 class ExplorationKeywords(TypedDict, total=False):
@@ -145,13 +146,7 @@ class ExplorationOptions:
         if keywords.get("reward") == "d_optimality" and "observation" not in keywords:
             words = "observation = 'da_slam' tells the completeness whatever the reward; name it, or 'da_slam_entropy'"
             warn(f"{words}, which reward = 'd_optimality' used to give", DeprecationWarning, stacklevel=3)
-        check_names("an exploration environment", keywords, [field.name for field in fields(cls)])
-        given = {name: value for name, value in plain(keywords).items() if (name, value) != ("max_episode_steps", None)}
-        options = cls(**given)
-        for name, allowed in _CHOICES.items():
-            check_choice(name, getattr(options, name), allowed)
-        for name, (low, high) in _RANGES.items():
-            check_range(name, getattr(options, name), low, high)
+        options, given = options_of(cls, "an exploration environment", keywords, _LIMITS), plain(keywords)
         options._check_rest()
         robot, lidar = (
             make_robot(given.get("robot"), ROBOT),
@@ -161,13 +156,9 @@ class ExplorationOptions:
         return replace(options, robot=robot, lidar=lidar)
 
     def _check_rest(self) -> None:
-        check_step_limit(self.max_episode_steps)
         if self.stop_at is not None:
             check_range("stop_at", self.stop_at, 0.0, 1.0)
-        if self.patience is not None:
-            check_range("patience", self.patience, 0.01, 1e9)
         self._check_slam()
-        check_switch("expose_truth", self.expose_truth)
         choose_reward(self.reward, REWARDS)
         choose_observer(self.observation, OBSERVATIONS)
         if isinstance(self.start, str) and self.start != "random":

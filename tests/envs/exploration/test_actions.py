@@ -60,7 +60,7 @@ def test_whole_numbers_are_actions_or_refused(numbers: list[int], kind: type) ->
         ("discrete", [0, 1], 3, "not one of the whole numbers"),
         ("discrete", [[0]], 1, "not one of the whole numbers"),
         ("discrete", [1.0], 1, "convert it to an integer"),
-        ("discrete", [0.5], 1, "0, 1, 2$"),
+        ("discrete", [0.5], 1, "0 to 2$"),
         ("discrete", [True], 1, "not one of the whole numbers"),
         ("discrete", ["0"], 1, "'0'"),
         ("discrete", [None], 1, "None"),
