@@ -13,6 +13,12 @@ Outcome = tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]
 """Rewards, terminated and truncated of a step, each (environments,)."""
 
 
+Generators = Sequence[np.random.Generator]
+"""Of all worlds; each draws from its own and from nothing else."""
+Seeds = Sequence[int | None] | None
+"""That all worlds were reset with; None where episodes follow on others."""
+
+
 class Episodes(Protocol):
     """Episodes in ``worlds`` worlds that step together; whoever owns them decides when a world is reset.
 
@@ -34,12 +40,7 @@ class Episodes(Protocol):
     single_observation_space: gym.Space[Any]
     single_action_space: gym.Space[Any]
 
-    def reset(
-        self,
-        worlds: Iterable[int],
-        generators: Sequence[np.random.Generator],
-        seeds: Sequence[int | None] | None = None,
-    ) -> None:
+    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``.
 
         Args:

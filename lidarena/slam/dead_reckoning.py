@@ -6,10 +6,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf, take_next
-from lidarena.slam.estimator import EstimatorSettings, Sensing, sense
+from lidarena.slam.estimator import EstimatorSettings, Floats, Sensing, sense
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
+from lidarena.slam.readings import Reading, ScanGeometry
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, compound_covariance, d_optimality
 from lidarena.world.odometry import deviations, move
@@ -32,14 +33,7 @@ class DeadReckoningEstimator(KnownPoseEstimator):
         super().__init__(settings)
         self.drift = np.zeros((settings.worlds, 3, 3))
 
-    def start(
-        self,
-        world: int,
-        plan: int,
-        origin: NDArray[np.float64],
-        pose: NDArray[np.float64],
-        rng: np.random.Generator,
-    ) -> None:
+    def start(self, world: int, plan: int, origin: Floats, pose: Floats, rng: np.random.Generator) -> None:
         """Begin an episode in one world, certain of the pose."""
         super().start(world, plan, origin, pose, rng)
         self.drift[world] = 0.0
@@ -76,11 +70,14 @@ def sense_and_reckon(
 
     ``d_optimalities`` (worlds,) is set to the D-optimality; the other arrays are those of ``DeadReckoningEstimator``.
     """
+    geometry = ScanGeometry(sensing.directions, sensing.lidar.max_range, resolution)
     w = take_next(counter)
     while w < last:
         sense(w, sensing)
-        reading = sensing.sensors.readings[w, 0]
-        dx, dy, dtheta = reading[0], reading[1], reading[2]
+        reading = Reading(
+            sensing.period, sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w]
+        )
+        dx, dy, dtheta = reading.motion[0], reading.motion[1], reading.motion[2]
         sx, sy, st = deviations(parameters.noise, dx, dy, dtheta)
         compound_covariance(estimate[w], drift[w], dx, dy, sx * sx, sy * sy, st * st)
         move(estimate[w], dx, dy, dtheta)
@@ -88,8 +85,5 @@ def sense_and_reckon(
             for j in range(3):
                 covariance[w, k, j] = drift[w, k, j] + (COVARIANCE_FLOOR[k] if j == k else 0.0)
         d_optimalities[w] = d_optimality(covariance[w])
-        map_scan(
-            w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters, reading,
-            sensing.sensors.scans[w, 0], sensing.sensors.fresh[w], estimate[w], since, maps, outlines, thread,
-        )  # fmt: skip
+        map_scan(w, reading, geometry, parameters, estimate[w], since, maps, outlines, thread)
         w = take_next(counter)

@@ -16,6 +16,8 @@ from lidarena.world.lidar import LidarSpec, MapGeometry
 from lidarena.world.odometry import OdometryNoise
 from lidarena.world.sensors import Sensors, read_sensors
 
+Floats = NDArray[np.float64]
+
 
 class ScanSpec(NamedTuple):
     """What the scans are that an estimator is given.
@@ -175,14 +177,7 @@ class BatchEstimator(ABC):
         self.covariance = np.zeros((settings.worlds, 3, 3))
         self.d_optimality: NDArray[np.float64] = np.zeros(settings.worlds)
 
-    def start(
-        self,
-        world: int,
-        plan: int,
-        origin: NDArray[np.float64],
-        pose: NDArray[np.float64],
-        rng: np.random.Generator,
-    ) -> None:
+    def start(self, world: int, plan: int, origin: Floats, pose: Floats, rng: np.random.Generator) -> None:
         """Begin an episode in one world; the next pass brings its first scan.
 
         Args:

@@ -8,6 +8,7 @@ from lidarena.slam.estimator import EstimatorSettings, Sensing, sense
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
+from lidarena.slam.readings import Reading, ScanGeometry
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
 
@@ -50,14 +51,14 @@ def sense_and_map(
     outlines: Outlines,
 ) -> None:
     """Read the sensors and map with the true poses, world after world from a counter (1,) that the threads share."""
+    geometry = ScanGeometry(sensing.directions, sensing.lidar.max_range, resolution)
     w = take_next(counter)
     while w < last:
         sense(w, sensing)
         for k in range(3):
             estimate[w, k] = sensing.poses[w, 0, k]
-        map_scan(
-            w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters,
-            sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w], estimate[w], since,
-            maps, outlines, thread,
-        )  # fmt: skip
+        reading = Reading(
+            sensing.period, sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w]
+        )
+        map_scan(w, reading, geometry, parameters, estimate[w], since, maps, outlines, thread)
         w = take_next(counter)

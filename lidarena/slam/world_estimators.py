@@ -13,6 +13,7 @@ from lidarena.base.jit import leaf, take_next
 from lidarena.slam.estimator import (
     BatchEstimator,
     EstimatorSettings,
+    Floats,
     MapGrid,
     ScanSpec,
     Sensing,
@@ -64,14 +65,7 @@ class WorldEstimators(BatchEstimator):
             except TypeError as error:
                 raise EstimatorError(f"{self._name} has a method {method} that cannot be called as {shown}") from error
 
-    def start(
-        self,
-        world: int,
-        plan: int,
-        origin: NDArray[np.float64],
-        pose: NDArray[np.float64],
-        rng: np.random.Generator,
-    ) -> None:
+    def start(self, world: int, plan: int, origin: Floats, pose: Floats, rng: np.random.Generator) -> None:
         """Reset one world's estimator; one that asks for a generator gets its own, seeded from the world's."""
         super().start(world, plan, origin, pose, rng)
         if self._draws:

@@ -1,4 +1,3 @@
-import os
 import signal
 import threading
 from pathlib import Path
@@ -15,9 +14,9 @@ def test_the_first_signal_asks_and_the_second_one_interrupts(
     before = signal.getsignal(number)
     with pytest.raises(KeyboardInterrupt), stop_on_signal() as request:
         assert not request.requested
-        os.kill(os.getpid(), number)
+        signal.raise_signal(number)
         assert request.requested
-        os.kill(os.getpid(), number)
+        signal.raise_signal(number)
     assert signal.getsignal(number) == before
     assert "Stopping after this update" in capsys.readouterr().err
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 from lidarena.slam.estimator import EstimatorSettings
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import empty_maps, trace_scan
+from lidarena.slam.readings import Reading, ScanGeometry
 from lidarena.slam.true_pose import TruePoseEstimator
 from lidarena.world.lidar import LidarSpec
 from lidarena.world.odometry import OdometryNoise
@@ -33,8 +34,8 @@ def mapper(worlds: int = 1) -> KnownPoseEstimator:
 def feed(
     made: KnownPoseEstimator, reading: np.ndarray, scan: np.ndarray, pose: np.ndarray, seconds: float, world: int = 0
 ) -> None:
-    settings_ = (seconds, 0.05, REACH, DIRECTIONS, made.parameters)
-    map_scan(world, *settings_, reading, scan, True, pose, made.since, made.maps, made.outlines, 0)
+    measured, geometry = Reading(seconds, reading, scan, True), ScanGeometry(DIRECTIONS, REACH, 0.05)
+    map_scan(world, measured, geometry, made.parameters, pose, made.since, made.maps, made.outlines, 0)
 
 
 def random_scans(count: int, seed: int) -> tuple[np.ndarray, np.ndarray]:

@@ -1,6 +1,6 @@
 """Episodes in a batch of arenas: rewards, endings, observations, infos; the single environment's too."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from typing import Any
 
@@ -15,6 +15,7 @@ from lidarena.envs.arena.rendering import ArenaRecorder, draw_arena
 from lidarena.envs.arena.rewards import REWARDS, weigh_terms
 from lidarena.envs.arena.state import ArenaCore
 from lidarena.envs.compilation import announced_compilation
+from lidarena.envs.episodes import Generators, Seeds
 from lidarena.envs.infos import Info, of_world
 from lidarena.envs.observers import OneByOne, choose_observer
 from lidarena.envs.rewards import StepRewards, choose_reward
@@ -53,12 +54,7 @@ class ArenaEpisodes:
         self._success = np.zeros(worlds, np.bool_)
         self._compiled = False
 
-    def reset(
-        self,
-        worlds: Iterable[int],
-        generators: Sequence[np.random.Generator],
-        seeds: Sequence[int | None] | None = None,
-    ) -> None:
+    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``.
 
         Args:

@@ -1,6 +1,6 @@
 """The multi-robot world for one controller of the whole team, single and in batches."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any, Unpack
 
 import gymnasium as gym
@@ -16,7 +16,7 @@ from lidarena.envs.corridor.drawing import draw_world
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
-from lidarena.envs.episodes import Outcome
+from lidarena.envs.episodes import Generators, Outcome, Seeds
 from lidarena.envs.infos import Info
 from lidarena.world.floorplan import Floorplan
 
@@ -41,12 +41,7 @@ class CentralEpisodes:
         if isinstance(self.teams.action_space, gym.spaces.Discrete):
             self.single_action_space = gym.spaces.MultiDiscrete([int(self.teams.action_space.n)] * robots)
 
-    def reset(
-        self,
-        worlds: Iterable[int],
-        generators: Sequence[np.random.Generator],
-        seeds: Sequence[int | None] | None = None,
-    ) -> None:
+    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``."""
         self.teams.reset(worlds, generators)
 

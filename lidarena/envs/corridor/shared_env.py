@@ -1,6 +1,6 @@
 """The multi-robot world as a batch of single robots that share one policy: what parameter sharing learns from."""
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable
 from typing import Any, ClassVar, Unpack
 
 import gymnasium as gym
@@ -13,7 +13,7 @@ from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
-from lidarena.envs.episodes import Outcome
+from lidarena.envs.episodes import Generators, Outcome, Seeds
 from lidarena.envs.infos import Info
 
 
@@ -34,12 +34,7 @@ class SharedEpisodes:
         self.single_observation_space: gym.Space[Any] = self.teams.observation_space
         self.single_action_space: gym.Space[Any] = self.teams.action_space
 
-    def reset(
-        self,
-        worlds: Iterable[int],
-        generators: Sequence[np.random.Generator],
-        seeds: Sequence[int | None] | None = None,
-    ) -> None:
+    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``."""
         self.teams.reset(worlds, generators)
 

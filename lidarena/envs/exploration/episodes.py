@@ -1,7 +1,7 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
 import math
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from typing import Any
 
@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.compilation import announced_compilation
+from lidarena.envs.episodes import Generators, Seeds
 from lidarena.envs.exploration.actions import action_space, commands_of
 from lidarena.envs.exploration.observations import ENTROPY, check_entropy, make_observer
 from lidarena.envs.exploration.options import OBSERVATIONS, ExplorationOptions
@@ -61,12 +62,7 @@ class ExplorationEpisodes:
         self._rewards = StepRewards(chosen, (worlds,), self._snapshot)
         self._compiled = False
 
-    def reset(
-        self,
-        worlds: Iterable[int],
-        generators: Sequence[np.random.Generator],
-        seeds: Sequence[int | None] | None = None,
-    ) -> None:
+    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
         begun = list(worlds)
         with nullcontext() if self._compiled else announced_compilation():

@@ -8,13 +8,14 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf, take_next
 from lidarena.base.keyword_checks import check_range
-from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Sensing, map_arrays, sense
+from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Floats, Sensing, map_arrays, sense
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.filter_kernel import step_filter
 from lidarena.slam.rbpf.likelihood_field import Fields, tiles_in_use
 from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.rbpf.scan_points import points_for
+from lidarena.slam.readings import Reading, ScanGeometry
 
 MOST_PARTICLES = 1000
 """So many particles a filter can have."""
@@ -48,14 +49,7 @@ class ParticleFilterEstimator(BatchEstimator):
         self.maps, self.estimate, self.covariance = self.filters.maps, state.estimate, state.covariance
         self.d_optimality, self.particles = state.criteria[:, 0], state.particles
 
-    def start(
-        self,
-        world: int,
-        plan: int,
-        origin: NDArray[np.float64],
-        pose: NDArray[np.float64],
-        rng: np.random.Generator,
-    ) -> None:
+    def start(self, world: int, plan: int, origin: Floats, pose: Floats, rng: np.random.Generator) -> None:
         """Start one filter anew; the next scan is its first."""
         self.filters.start(world, plan, origin, pose)
         self.filters.state.estimate[world] = pose
@@ -105,12 +99,12 @@ def sense_and_filter(
     scratch: Scratch,
 ) -> None:
     """Read the sensors and run the particle filter, world after world from a counter (1,) that the threads share."""
+    geometry = ScanGeometry(sensing.directions, sensing.lidar.max_range, resolution)
     w = take_next(counter)
     while w < last:
         sense(w, sensing)
-        step_filter(
-            w, sensing.period, resolution, sensing.lidar.max_range, sensing.directions, parameters,
-            sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w], sensing.streams[w],
-            state, maps, scratch, thread,
-        )  # fmt: skip
+        reading = Reading(
+            sensing.period, sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w]
+        )
+        step_filter(w, reading, geometry, parameters, sensing.streams[w], state, maps, scratch, thread)
         w = take_next(counter)

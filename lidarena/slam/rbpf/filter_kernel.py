@@ -16,6 +16,7 @@ from lidarena.slam.rbpf.registration import register_points
 from lidarena.slam.rbpf.scan_matching import match, match_cost
 from lidarena.slam.rbpf.scan_points import extract_points
 from lidarena.slam.rbpf.symmetric import Symmetric, inverse, load, rotated
+from lidarena.slam.readings import Reading, ScanGeometry
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import compound_covariance, d_optimality, pose_moments, score_entropy, weight_entropy
 from lidarena.world.odometry import deviations, move, relative_motion
@@ -31,14 +32,9 @@ _LEAST_VARIANCE = 1e-8
 @merged
 def step_filter(
     w: int,
-    duration: float,
-    resolution: float,
-    max_range: float,
-    directions: NDArray[np.float64],
+    reading: Reading,
+    geometry: ScanGeometry,
     parameters: FilterParameters,
-    reading: NDArray[np.float64],
-    scan: NDArray[np.float32],
-    fresh: bool,
     stream: NDArray[np.uint64],
     state: FilterState,
     maps: OccupancyMaps,
@@ -51,14 +47,9 @@ def step_filter(
 
     Args:
         w: World.
-        duration: Time since the last call [s].
-        resolution: Of the grids [m].
-        max_range: Ranges from here on are no returns [m].
-        directions: (2, beams) cos and sin of the beams' angles.
+        reading: What was measured since the last call.
+        geometry: Of scans and grids.
         parameters: The filters' settings.
-        reading: (3,) odometry in the robot's frame before the motion.
-        scan: (beams,) ranges after it [m].
-        fresh: Whether the scan was taken now; an older one is not looked at.
         stream: (4,) random stream.
         state: The filters.
         maps: The published maps.
@@ -67,10 +58,10 @@ def step_filter(
     """
     due = state.updates[w] == 0
     if not due:
-        predict(w, duration, reading, parameters, stream, state)
+        predict(w, reading.duration, reading.motion, parameters, stream, state)
         due = state.since[w, 0] >= parameters.linear_update or state.since[w, 1] >= parameters.angular_update
-    if fresh and (due or state.since[w, 2] > parameters.temporal_update):
-        update(w, resolution, max_range, directions, parameters, scan, stream, s, state, maps, scratch)
+    if reading.fresh and (due or state.since[w, 2] > parameters.temporal_update):
+        update(w, geometry, parameters, reading.scan, stream, s, state, maps, scratch)
     _summarise(w, state)
 
 
@@ -98,9 +89,7 @@ def predict(
 @merged
 def update(
     w: int,
-    resolution: float,
-    max_range: float,
-    directions: NDArray[np.float64],
+    geometry: ScanGeometry,
     parameters: FilterParameters,
     scan: NDArray[np.float32],
     stream: NDArray[np.uint64],
@@ -115,13 +104,12 @@ def update(
     its own, since every call below takes seconds to compile.)
     """
     begins = state.updates[w] == 0
-    stride = (
-        np.int64(1) if begins else np.int64(parameters.stride)
-    )  # neighbours lie within each other's stamp: take turns
+    # neighbours lie within each other's stamp: take turns
+    stride = np.int64(1) if begins else np.int64(parameters.stride)
     points, motion, prior = scratch.points[s], scratch.poses[s, 0], scratch.poses[s, 1]
     count = extract_points(
-        scan, directions, max_range, parameters.points, state.updates[w] % stride, stride, scratch.means[s],
-        scratch.numbers[s], points, scratch.flat[s],
+        scan, geometry.directions, geometry.max_range, parameters.points, state.updates[w] % stride, stride,
+        scratch.means[s], scratch.numbers[s], points, scratch.flat[s],
     )  # fmt: skip
     chosen, matched = scratch.chosen[s], _choose(s, count, parameters.matcher.points, scratch)
     reals, integers = scratch.work.reals[s], scratch.work.integers[s]
@@ -129,7 +117,7 @@ def update(
     if begins:
         clear_fields(state.fields, w)
     else:
-        _likeliest_motion(w, resolution, parameters, chosen, matched, motion, prior, reals, integers, state, maps)
+        _likeliest_motion(w, geometry.resolution, parameters, matched, state, maps, scratch, s)
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
@@ -141,7 +129,7 @@ def update(
             move(state.particles[w, i], motion[0], motion[1], motion[2])
             move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
             likelihood, posterior = match(
-                state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], resolution, chosen,
+                state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], geometry.resolution, chosen,
                 matched, reals, integers, parameters.matcher, prior, information, state.particles[w, i],
             )  # fmt: skip
             motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
@@ -152,11 +140,12 @@ def update(
             copy_field(state.fields, w, _FIRST, i)
         else:
             register_points(
-                state.fields, w, i, state.particles[w, i], maps.origin[w], resolution, points, count, reals, integers
-            )
+                state.fields, w, i, state.particles[w, i], maps.origin[w], geometry.resolution, points, count, reals,
+                integers,
+            )  # fmt: skip
         copy_vector(state.anchors[w, i], state.particles[w, i])
     _normalise(w, state)
-    _publish(w, resolution, max_range, directions, parameters, scan, state, maps, scratch.outlines, s)
+    _publish(w, geometry, parameters, scan, state, maps, scratch.outlines, s)
     if state.criteria[w, 2] < parameters.resample_share * parameters.particles:
         _resample(w, stream, scratch.numbers[s], state)
     _forget_motion(w, state)
@@ -167,21 +156,22 @@ def _likeliest_motion(
     w: int,
     resolution: float,
     parameters: FilterParameters,
-    points: NDArray[np.float64],
     count: int,
-    motion: NDArray[np.float64],
-    pose: NDArray[np.float64],
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
     state: FilterState,
     maps: OccupancyMaps,
+    scratch: Scratch,
+    s: int,
 ) -> None:
-    """Which of some particles' sampled motions since the last scan fits the first particle's map best (3,).
+    """Which of some particles' sampled motions since the last scan fits the first particle's map best.
+
+    It is written to ``scratch.poses[s, 0]``; fitting are the first ``count`` points of ``scratch.chosen``.
 
     What the odometry got wrong is the same for all particles: matching starts each of them where the one before it
     ended, and the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were
-    needed. Beside the samples, the odometry itself is tried with some turn more and less. ``pose`` (3,) is overwritten.
+    needed. Beside the samples, the odometry itself is tried with some turn more and less.
     """
+    points, motion, pose = scratch.chosen[s], scratch.poses[s, 0], scratch.poses[s, 1]
+    reals, integers = scratch.work.reals[s], scratch.work.integers[s]
     least, samples = math.inf, min(parameters.starts, state.particles.shape[1])
     for i in range(samples + 2 * parameters.turned_starts):
         if i < samples:
@@ -257,9 +247,7 @@ def _normalise(w: int, state: FilterState) -> None:
 @leaf
 def _publish(
     w: int,
-    resolution: float,
-    max_range: float,
-    directions: NDArray[np.float64],
+    geometry: ScanGeometry,
     parameters: FilterParameters,
     scan: NDArray[np.float32],
     state: FilterState,
@@ -267,7 +255,8 @@ def _publish(
     outlines: Outlines,
     s: int,
 ) -> None:
-    """Remember the scan and trace it from the best particle, tracing anew the past scans in which that one differs."""
+    """Remember the scan and trace it from the best particle, tracing again the past scans in which that one differs."""
+    resolution, directions, max_range = geometry.resolution, geometry.directions, geometry.max_range
     history = parameters.history
     now = state.updates[w]
     slot = now % history

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
 from lidarena.slam.rbpf.filter_kernel import step_filter
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch, empty_scratch, empty_state
+from lidarena.slam.readings import Reading, ScanGeometry
 
 
 class ParticleFilters:
@@ -48,13 +49,7 @@ class ParticleFilters:
         self.state: FilterState = empty_state(worlds, rows, columns, directions.shape[1], self.parameters)
         self.scratch: Scratch = empty_scratch(worlds, rows, directions.shape[1], max_range, resolution, self.parameters)
 
-    def start(
-        self,
-        world: int,
-        plan: int,
-        origin: NDArray[np.float64],
-        pose: NDArray[np.float64],
-    ) -> None:
+    def start(self, world: int, plan: int, origin: NDArray[np.float64], pose: NDArray[np.float64]) -> None:
         """Start one filter anew; the next scan is its first.
 
         Args:
@@ -79,7 +74,8 @@ class ParticleFilters:
 
         Several filters at once, on all cores: ``filter_kernel.step_filter`` in a kernel of one's own.
         """
+        geometry = ScanGeometry(self.directions, self.max_range, self.resolution)
         step_filter(
-            world, duration, self.resolution, self.max_range, self.directions, self.parameters,
-            reading, scan, True, stream, self.state, self.maps, self.scratch, 0,
+            world, Reading(duration, reading, scan, True), geometry, self.parameters, stream, self.state, self.maps,
+            self.scratch, 0,
         )  # fmt: skip
