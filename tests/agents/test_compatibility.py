@@ -69,7 +69,7 @@ def test_the_same_shape_is_not_the_same_observation() -> None:
 def test_keywords_that_are_only_of_the_training_do_not_matter() -> None:
     env = gym.make("lidarena/Arena-v0", **ARENA, reward={"progress": 2.0}, density=0.1)
     learned = agents.load("pretrained:arena")
-    learned.env_keywords = {**learned.env_keywords, "arena": "barn", "path": "/not/here", "speed": -3}
+    learned.env_keywords = {**learned.env_keywords, "arena": "barn", "path": "/not/here", "robot": {"max_speed": -3}}
     assert agents.ready(learned, env) is learned
 
 
