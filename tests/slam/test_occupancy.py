@@ -122,7 +122,8 @@ def test_a_dense_scan_frees_what_lies_between_its_beams_and_nothing_else(corners
             # beyond the gaps only what a beam itself passes or hits: at most a cell beside it
             elif depth < -0.08 and maps.visits[0, row, column] > 0:
                 nearest = np.abs((math.atan2(dy, dx) - pose[2] - TURN[360] + np.pi) % (2 * np.pi) - np.pi).argmin()
-                around = scan[np.arange(nearest - 1, nearest + 2) % 360].max()
+                beside = 1 + math.ceil(math.degrees(math.atan2(0.05 * math.sqrt(0.5), math.hypot(dx, dy))))
+                around = scan[np.arange(nearest - beside, nearest + beside + 1) % 360].max()
                 assert math.hypot(dx, dy) < min(around, 3.5) + 0.08
 
 
