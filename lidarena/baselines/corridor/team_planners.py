@@ -19,6 +19,8 @@ from lidarena.planning.team.team_plan import TeamPlan
 
 ROOM = 0.2
 """Robots are planned as discs of at least this radius [m]."""
+_KEEPS_UP = 0.4
+"""Robots that are slower than this take as much longer for a step of the plan [m/s]."""
 _COMFORT, _WALL_COST = 0.5, 1.0
 """Cells nearer to a wall than this [m] cost more, right at the wall so many steps: the blurred P(occ)."""
 
@@ -53,7 +55,8 @@ class PlannedFleet:
             raise ConfigError(f"step = {step} s is out of range; a number from 0.1 to 10 is allowed")
         if not 0.0 < time_limit <= 3600.0:
             raise ConfigError(f"time_limit = {time_limit} s is out of range; more than 0 and at most 3600 is allowed")
-        self.step, self.time_limit = step, time_limit
+        self.step = step * max(1.0, _KEEPS_UP / self.fleet.robot.max_speed)
+        self.time_limit = time_limit
         self.reset()
 
     def reset(self, seed: int | None = None) -> None:
@@ -140,7 +143,8 @@ class IndependentFleet(PlannedFleet):
         Args:
             env: A ``corridor_v0.parallel_env`` or ``lidarena/CorridorCentral-v0``.
             planning_radius: Of the discs that are planned for [m]; None leaves some room beside the robots.
-            step: How long a step of the plan, a cell of 0.2 m, takes [s].
+            step: How long a step of the plan, a cell of 0.2 m, takes a robot of 0.4 m/s or more [s]; a slower one
+                takes as much longer.
 
         Raises:
             ConfigError: An option is out of range.
@@ -170,7 +174,8 @@ class PrioritizedFleet(PlannedFleet):
             deviation: Whether the model of how robots deviate from their plans is used.
             model: That model; None takes the one that comes with the package.
             planning_radius: Of the discs that are planned for [m]; None leaves some room beside the robots.
-            step: How long a step of the plan, a cell of 0.2 m, takes [s].
+            step: How long a step of the plan, a cell of 0.2 m, takes a robot of 0.4 m/s or more [s]; a slower one
+                takes as much longer.
 
         Raises:
             ConfigError: An option is out of range.
@@ -218,7 +223,8 @@ class JointFleet(CoordinatedFleet):
         Args:
             env: A ``corridor_v0.parallel_env`` or ``lidarena/CorridorCentral-v0``.
             planning_radius: Of the discs that are planned for [m]; None leaves some room beside the robots.
-            step: How long a step of the plan, a cell of 0.2 m, takes [s].
+            step: How long a step of the plan, a cell of 0.2 m, takes a robot of 0.4 m/s or more [s]; a slower one
+                takes as much longer.
             time_limit: A million states each second [s].
 
         Raises:

@@ -89,9 +89,9 @@ class Driver:
 
     def sense(self, observation: Any, info: Mapping[str, Any]) -> None:
         """Take in the environment's newest observation and info."""
-        self._observation, self._info = observation, info
+        self._observation, self._info = self.robot.beams_in(observation, info), info
         self.pose = np.array(info["pose"], dtype=np.float64)
-        self._hits.append(self.robot.hits(observation, self.pose, _NEAR_HITS + self._extra))
+        self._hits.append(self.robot.hits(self._observation, self.pose, _NEAR_HITS + self._extra))
         self._around = self._nearby()
         self._is_clear = self._follower.is_clear(self.pose, self._around)
 

@@ -22,6 +22,8 @@ _SPEED, _TURN_RATE = 0.5, 1.0
 _STEERED = np.array([(1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.5), (1.0, -0.5)])
 _SLACK = 0.03
 """Room beside the collision distance that commands leave, three sigma of DA-SLAM's lidar or of another one's [m]."""
+_KNOWN = ("da_slam", "sectors", "frontier_histogram", "map")
+"""Observations that hold beams."""
 _PIECE = 0.1
 """Commands are compared with hits at points of their way so far apart [m]."""
 
@@ -65,6 +67,12 @@ class Robot:
         """Return the environment's action for a command."""
         return command if self._discrete else box_action(self.spec, *self.commands.velocities[command].tolist())
 
+    def beams_in(self, observation: Any, info: Mapping[str, Any]) -> Any:
+        """Return an observation that holds beams: the environment's own, else the scan in ``info``."""
+        if self._observation in _KNOWN or "scan" not in info:
+            return observation
+        return {"scan": np.asarray(info["scan"], np.float64) / self._lidar.max_range}
+
     def would_touch(self, command: int, observation: Any) -> bool:
         """Return whether the beams that were observed say that a command ends in a collision.
 
@@ -94,18 +102,18 @@ class Robot:
 
         None of an observation that is not the environment's own.
         """
-        if isinstance(observation, Mapping):
+        if isinstance(observation, Mapping) and "scan" in observation:
             scan = np.asarray(observation["scan"], np.float64)
             return scan, self._lidar.angles
+        if self._observation not in _KNOWN:
+            return np.empty(0), np.empty(0)
         numbers = np.asarray(observation, np.float64)
         if self._observation == "sectors":
             return numbers[:SECTORS], sector_angles()
         if self._observation == "frontier_histogram":  # nearness; rounded, as a free beam is to have the range 1
             touch = self.spec.contact_distance / self._lidar.max_range
             return np.round(touch / numbers[:SECTORS], 5), sector_angles()
-        if self._observation == "da_slam":
-            return numbers[: len(FRONT_ANGLES)], np.array(FRONT_ANGLES)
-        return np.empty(0), np.empty(0)
+        return numbers[: len(FRONT_ANGLES)], np.array(FRONT_ANGLES)
 
 
 @kernel

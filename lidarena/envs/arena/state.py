@@ -13,6 +13,7 @@ from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import MapGeometry, first_scan
 from lidarena.world.physics import Physics
+from lidarena.world.robots import RobotSpec
 
 _MARGIN = 1e-3
 """Room beside the way below which the solver is asked whether the robot touches [m in a 100 m room]."""
@@ -56,6 +57,7 @@ class ArenaCore:
         self.period, self.goal_radius = self.options.decision_period or scale, self.options.goal_radius or scale
         self.step_length = self.robot.max_speed * self.period
         self.physics = Physics(worlds)
+        self._bodies: dict[float, RobotSpec] = {}
         self.directions = self.beam.directions
         self._allocate()
 
@@ -148,10 +150,11 @@ class ArenaCore:
     def _place(self, world: int, plan: Floorplan, pose: tuple[float, float, float]) -> None:
         # half a radius a step: no body passes through another between two looks of the solver
         radius = float(self.radii[world])
-        smallest = self.robot.inner_radius if self.robot.outline else radius
-        substep = min(0.5 * smallest / self.robot.max_speed, 0.25 * self.period)
-        spec = replace(self.robot, radius=radius, substep=substep)
-        self.physics.place(world, plan, [pose], spec)
+        if radius not in self._bodies:
+            smallest = self.robot.inner_radius if self.robot.outline else radius
+            substep = min(0.5 * smallest / self.robot.max_speed, 0.25 * self.period)
+            self._bodies[radius] = replace(self.robot, radius=radius, substep=substep)
+        self.physics.place(world, plan, [pose], self._bodies[radius])
 
     def _meet(self, world: int) -> None:
         """Give the solver only the obstacles that a robot can reach in a step, so that it has few to check."""

@@ -70,7 +70,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
 
     | Num | Observation |
     |-----|-------------|
-    | 0 … n-1 | the beams over 3.5 m, the first one straight ahead, counter-clockwise |
+    | 0 … n-1 | the beams over the longest range (3.5 m), the first one straight ahead, counter-clockwise |
     | n, n+1  | the goal's bearing in the robot's frame: cos, sin |
     | n+2     | d / (d + 2 m) of the straight distance d to it |
     | n+3, n+4 | own speed / 0.5 m/s, own turn rate / 2 rad/s |

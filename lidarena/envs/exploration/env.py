@@ -44,7 +44,7 @@ class ExplorationEnv(SingleWorld):
 
     | Num | Observation |
     |-----|-------------|
-    | 0–4 | beams at 0, 45, 90, -45, -90 degrees, over 3.5 m |
+    | 0–4 | beams at 0, 45, 90, -45, -90 degrees, over the longest range |
     | 5   | previous action / 2 (continuous: two numbers, each mapped to [0, 1]) |
     | 6   | completeness |
 
@@ -57,7 +57,7 @@ class ExplorationEnv(SingleWorld):
 
     | Num   | Observation |
     |-------|-------------|
-    | 0–35  | 0.12 m over the nearest hit in each of the same sectors |
+    | 0–35  | the radius and 0.015 m over the nearest hit in each of the same sectors |
     | 36–71 | to how much of the frontier each sector leads, around walls, see ``frontier_histogram`` |
     | 72–73 | (1 + cos) / 2, (1 + sin) / 2 of the mean direction of these; 0.5, 0.5 where there is none |
     | 74–75 | as 5 and 6 above |
@@ -87,12 +87,13 @@ class ExplorationEnv(SingleWorld):
 
     ## Starting state
 
-    The map's own start, ``start=(x, y, theta)``, or ``start="random"``: any reachable place 0.25 m from the walls, any
-    heading. The filter knows the start: its frame is the floor plan's.
+    The map's own start, ``start=(x, y, theta)``, or ``start="random"``: any reachable place some 0.25 m from the walls,
+    any heading. The filter knows the start: its frame is the floor plan's.
 
     ## Episode end
 
-    - Termination: some beam is shorter than ``collision_distance`` (0.12 m), or completeness reached ``stop_at``.
+    - Termination: something is nearer to the robot's centre than its ``collision_distance`` (0.12 m), or completeness
+      reached ``stop_at``.
     - Truncation: after ``max_episode_steps`` (1000) steps, or after ``patience`` seconds (never) without 0.1% more.
 
     ## Info

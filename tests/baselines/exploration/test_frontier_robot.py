@@ -65,8 +65,18 @@ def test_beams_are_where_the_lidar_has_them() -> None:
     assert Robot(env).hits({"scan": np.zeros(180)}, info["pose"], 5.0).shape == (0, 2)
 
 
-def test_nothing_is_read_out_of_a_strangers_observation() -> None:
-    env = ExplorationEnv(map="env2")
-    robot = Robot(env)
-    robot._observation = "somebody's own"
-    assert not robot.would_touch(0, np.zeros(50)) and robot.hits(np.full(50, 0.1), np.zeros(3), 5.0).shape == (0, 2)
+class Nothing:
+    """An observation without beams."""
+
+    space = gym.spaces.Box(0.0, 1.0, (50,), np.float32)
+
+    def observe(self, snapshot: Any) -> np.ndarray:
+        return np.full(50, 0.1, np.float32)
+
+
+def test_beams_of_a_strangers_observation_come_from_the_info() -> None:
+    env = ExplorationEnv(map="env2", observation=Nothing, slam="truth", lidar={"noise": 0.0})
+    robot, (observation, info) = Robot(env), env.reset(seed=0)
+    assert robot.hits(observation, np.zeros(3), 5.0).shape == (0, 2) and not robot.would_touch(0, observation)
+    hits = robot.hits(robot.beams_in(observation, info), info["pose"], 5.0)
+    assert len(hits) > 50 and np.abs(env.floorplan.clearance(hits)).max() < 1e-4
