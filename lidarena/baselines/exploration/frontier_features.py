@@ -104,7 +104,7 @@ def describe(
     features = np.zeros((CANDIDATES, FEATURES), np.float32)
     for i, candidate in enumerate(candidates):
         others = np.delete(apart[i], i)
-        leg = terrain.around.points(np.array([_first_leg(lengths, *candidate.cell, _LEG)]))[0] - pose[:2]
+        leg = beginning_of_way(lengths, candidate.cell, terrain) - pose[:2]
         turn = abs(math.remainder(math.atan2(leg[1], leg[0]) - pose[2], 2.0 * math.pi))
         been = np.flatnonzero(np.hypot(*(track - goals[i]).T) < _BEEN)
         features[i] = (
@@ -116,6 +116,18 @@ def describe(
             *certainty.features(),
         )  # fmt: skip
     return features
+
+
+def beginning_of_way(lengths: NDArray[np.float64], cell: tuple[int, int], terrain: Terrain) -> NDArray[np.float64]:
+    """Return the point (2,) x, y [m] that lies 0.6 m on the robot's way to a cell.
+
+    Args:
+        lengths: (rows, cols) of the way to every cell of ``terrain`` [m].
+        cell: [row, column].
+        terrain: The map.
+    """
+    point: NDArray[np.float64] = terrain.around.points(np.array([_first_leg(lengths, *cell, _LEG)]))[0]
+    return point
 
 
 def _unknown_share(terrain: Terrain, cell: tuple[int, int]) -> float:

@@ -1,0 +1,59 @@
+"""Floor plans drawn afresh: mazes, rooms, furnished rooms, caves, warehouses, and a mixture of them."""
+
+from collections.abc import Callable, Mapping
+
+import numpy as np
+
+from lidarena.base.errors import MapError, suggest
+from lidarena.world.floorplan import Floorplan
+from lidarena.world.random_plans import cave, furniture, mazes, rooms, warehouse
+from lidarena.world.random_plans.options import COMMON, checked_options
+
+__all__ = ["KINDS", "MIXED", "options_of", "random_plan"]
+
+Draw = Callable[[np.random.Generator, Mapping[str, float], str], Floorplan]
+KINDS: dict[str, tuple[Draw, Mapping[str, tuple[float, float]]]] = {
+    "maze": (mazes.random_maze, mazes.OPTIONS),
+    "rooms": (rooms.random_rooms, rooms.OPTIONS),
+    "furnished": (furniture.random_furnished, furniture.OPTIONS),
+    "cave": (cave.random_cave, cave.OPTIONS),
+    "warehouse": (warehouse.random_warehouse, warehouse.OPTIONS),
+}
+"""How each kind is drawn, and its own options with their ranges."""
+MIXED = "mixed"
+"""The kind that draws one of the others."""
+
+
+def options_of(kind: str) -> dict[str, tuple[float, float]]:
+    """Return the options of a kind with their ranges.
+
+    Raises:
+        MapError: There is no such kind.
+    """
+    if kind == MIXED:
+        return dict(COMMON)
+    if kind not in KINDS:
+        raise MapError(f"there is no kind of random plans {kind!r}{suggest(kind, [*KINDS, MIXED])}")
+    return COMMON | dict(KINDS[kind][1])
+
+
+def random_plan(kind: str, rng: np.random.Generator, **options: float) -> Floorplan:
+    """Draw a floor plan; the same state of the generator gives the same plan.
+
+    Every place that is wide enough for a robot of 0.12 m radius can be reached from every other.
+
+    Args:
+        kind: One of ``KINDS``, or ``"mixed"``.
+        rng: What everything is drawn from.
+        **options: ``width`` and ``height`` [m], or ``area``, or ``area_min`` and ``area_max`` [m²] (30 to 120), and
+            the kind's own: see ``options_of``.
+
+    Raises:
+        MapError: There is no such kind or option, one is out of range, or nothing fits into the size.
+    """
+    options_of(kind)
+    if kind == MIXED:
+        checked_options(kind, options, {})
+        kind = tuple(KINDS)[int(rng.integers(len(KINDS)))]
+    draw, own = KINDS[kind]
+    return draw(rng, checked_options(kind, options, own), f"random:{kind}")
