@@ -11,7 +11,8 @@ from numpy.typing import ArrayLike, NDArray
 from lidarena.base.errors import MapError, suggest
 from lidarena.world import barn
 from lidarena.world.floorplan import Bounds, Floorplan
-from lidarena.world.load import load_floorplan, read_options, read_seed
+from lidarena.world.load import load_floorplan
+from lidarena.world.map_options import read_options, read_seed
 from lidarena.world.plan_generators import generator_name, plan_generator
 from lidarena.world.random_arenas import DENSITY, random_arena_shapes, u_trap_shapes
 

@@ -11,6 +11,7 @@ import numpy as np
 from lidarena.base.errors import MapError
 from lidarena.base.import_names import import_named
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.random_plans import random_plans
 
 PlanGenerator = Callable[[np.random.Generator], Floorplan]
 """Draws a floor plan, with nothing random but from the generator that it is given: same numbers, same plan.
@@ -28,13 +29,16 @@ def plan_generator(spec: object) -> PlanGenerator | None:
     """Return the generator that ``map=`` names; None if it names something else.
 
     Args:
-        spec: A callable, or ``"module:callable"``; a class is made once, without arguments.
+        spec: A callable, or ``"module:callable"``; a class is made once, without arguments. Or ``"random:KIND"``, see
+            ``random_plans``.
 
     Raises:
         ConfigError: There is no such module, or no such name in it.
         MapError: What is named cannot be called.
     """
     found: Any = spec
+    if isinstance(spec, str) and spec.startswith("random:"):
+        return random_plans(spec)
     if isinstance(spec, str):
         if not _NAMED.fullmatch(spec):
             return None

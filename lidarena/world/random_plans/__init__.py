@@ -1,15 +1,17 @@
 """Floor plans drawn afresh: mazes, rooms, furnished rooms, caves, warehouses, and a mixture of them."""
 
 from collections.abc import Callable, Mapping
+from functools import lru_cache
 
 import numpy as np
 
 from lidarena.base.errors import MapError, suggest
 from lidarena.world.floorplan import Floorplan
+from lidarena.world.map_options import read_options
 from lidarena.world.random_plans import cave, furniture, mazes, rooms, warehouse
-from lidarena.world.random_plans.options import COMMON, checked_options
+from lidarena.world.random_plans.options import COMMON, checked_options, largest_sides
 
-__all__ = ["KINDS", "MIXED", "options_of", "random_plan"]
+__all__ = ["KINDS", "MIXED", "RandomPlans", "options_of", "random_plan", "random_plans"]
 
 Draw = Callable[[np.random.Generator, Mapping[str, float], str], Floorplan]
 KINDS: dict[str, tuple[Draw, Mapping[str, tuple[float, float]]]] = {
@@ -57,3 +59,40 @@ def random_plan(kind: str, rng: np.random.Generator, **options: float) -> Floorp
         kind = tuple(KINDS)[int(rng.integers(len(KINDS)))]
     draw, own = KINDS[kind]
     return draw(rng, checked_options(kind, options, own), f"random:{kind}")
+
+
+class RandomPlans:
+    """Draws a plan of a kind for every episode: what ``map="random:KIND"`` stands for.
+
+    Args:
+        kind: One of ``KINDS``, or ``"mixed"``.
+        options: As in ``random_plan``.
+
+    Attributes:
+        size: Width and height of the largest plan that may be drawn [m].
+
+    Raises:
+        MapError: There is no such kind or option, or one is out of range.
+    """
+
+    def __init__(self, kind: str, options: Mapping[str, float]) -> None:
+        options_of(kind)
+        own = {} if kind == MIXED else KINDS[kind][1]
+        self.kind, self.options = kind, checked_options(kind, options, own)
+        self.size = largest_sides(self.options)
+        self.__name__ = f"random:{kind}"
+
+    def __call__(self, rng: np.random.Generator) -> Floorplan:
+        """Draw a plan."""
+        return random_plan(self.kind, rng, **self.options)
+
+
+@lru_cache(maxsize=64)
+def random_plans(spec: str) -> RandomPlans:
+    """Return what draws the plans of a spec such as ``"random:rooms"`` or ``"random:maze?area_max=60&loops=0.2"``.
+
+    Raises:
+        MapError: There is no such kind or option, or one is out of range.
+    """
+    kind, _, text = spec.removeprefix("random:").partition("?")
+    return RandomPlans(kind, read_options(spec, text, list(options_of(kind))))

@@ -75,3 +75,12 @@ def draw_size(rng: np.random.Generator, given: Mapping[str, float]) -> tuple[flo
     ratio = math.exp(rng.uniform(-1.0, 1.0) * math.log(_LONGEST))
     width = round(math.sqrt(area * ratio), 1)
     return width, round(area / width, 1)
+
+
+def largest_sides(given: Mapping[str, float]) -> tuple[float, float]:
+    """Return the largest width and height that ``draw_size`` draws [m]."""
+    if "width" in given:
+        return given["width"], given["height"]
+    area = given.get("area", given.get("area_max", max(_USUAL_AREAS[1], given.get("area_min", 0.0))))
+    side = round(math.sqrt(area * _LONGEST), 1) + 0.1  # as sizes are rounded
+    return side, side

@@ -214,7 +214,7 @@ def _cut_doors(
         if k in chosen:
             room = wall.high - wall.low - 2.0 * _JAMB
             wide = min(door * float(rng.uniform(1.0, 1.0 + _WIDER)), room)
-            middle = float(rng.uniform(wall.low + _JAMB + 0.5 * wide, wall.high - _JAMB - 0.5 * wide))
+            middle = wall.low + _JAMB + 0.5 * wide + (room - wide) * float(rng.random())
             doors.append((middle, wall.at, wide) if wall.level else (wall.at, middle, wide))
             # drawn walls reach half their thickness beyond their ends
             pieces = [(wall.low, middle - 0.5 * wide), (middle + 0.5 * wide, wall.high)]
