@@ -140,7 +140,8 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
             endings = self._endings(observations, done)
             self._begin(self._worlds_of(done), None)
             overwrite(observations, self.episodes.observe(), done)
-        infos = masked(self.episodes.infos(), np.ones(self.num_envs, np.bool_)) | endings
+        infos = masked(self.episodes.infos(), np.ones(self.num_envs, np.bool_))
+        infos.update(endings)
         return observations, rewards, terminated, truncated, infos
 
     def _worlds_of(self, environments: NDArray[np.bool_]) -> list[int]:

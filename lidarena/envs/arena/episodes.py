@@ -110,7 +110,9 @@ class ArenaEpisodes:
 
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds."""
-        return self._facts() | {"reward_terms": {name: term.copy() for name, term in self._rewards.terms.items()}}
+        facts = self._facts()
+        facts["reward_terms"] = {name: term.copy() for name, term in self._rewards.terms.items()}
+        return facts
 
     def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
         """What every step tells, as it is now; one world's part by its number."""

@@ -60,6 +60,8 @@ class ExplorationEpisodes:
         chosen = choose_reward(options.reward, REWARDS)
         self._terms = ExplorationTerms(self.core, chosen, options.eta, options.certain_enough)
         self._rewards = StepRewards(chosen, (worlds,), self._snapshot)
+        self._resolution, self._radius = np.full(worlds, RESOLUTION), np.full(worlds, self.core.robot.radius)
+        self._resolution.flags.writeable = self._radius.flags.writeable = False  # every info holds the same ones
         self._compiled = False
 
     def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
@@ -127,8 +129,9 @@ class ExplorationEpisodes:
 
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds; ``map`` is a read-only view that later steps change."""
-        terms = {name: term.copy() for name, term in self._rewards.terms.items()}
-        return self._facts() | {"reward_terms": terms}
+        facts = self._facts()
+        facts["reward_terms"] = {name: term.copy() for name, term in self._rewards.terms.items()}
+        return facts
 
     def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
         """What every step tells, as it is now; one world's part by its number."""
@@ -155,9 +158,9 @@ class ExplorationEpisodes:
                 "scan": core.sensors.scans[:, 0].copy(),
                 "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
                 "map": view,
-                "resolution": np.full(core.worlds, RESOLUTION),
+                "resolution": self._resolution,
                 "origin": core.maps.origin.copy(),
-                "radius": np.full(core.worlds, core.robot.radius),
+                "radius": self._radius,
             }
         )
         if self.options.expose_truth:
