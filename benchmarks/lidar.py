@@ -15,7 +15,7 @@ from lidarena.base.terminal import make_output_printable
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, LidarSpec
 from lidarena.world.load import load_floorplan
-from lidarena.world.physics import build_space
+from lidarena.world.spaces import build_space
 
 PLANS = ("env1", "env2", "env3", "env4", "willow_lobby", "turtlebot3_world", "aws_small_house", "willow")
 BEAMS, REACH = 36, 3.5

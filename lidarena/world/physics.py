@@ -8,50 +8,31 @@ import numpy as np
 import pymunk
 from numpy.typing import NDArray
 
-from lidarena.base.jit import inlined, leaf
+from lidarena.base.jit import leaf
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.robots import RobotSpec
+from lidarena.world.spaces import Spaces, add_robot, glide_one, turn_wheels
 
-_SLOP = 1e-3
-"""Overlap that contacts tolerate [m]; pymunk's default of 0.1 is meant for pixels."""
 _MARGIN = 0.02
 """Room beside a robot's way within which it might touch what its beams see, or just miss [m]."""
 
 
-class Physics:
-    """The pymunk spaces of a batch of worlds.
+class Physics(Spaces):
+    """Worlds in which robots move, each of them as a whole: all its robots are near something, or none is.
 
-    Args:
-        worlds: Number of worlds.
-        robots: Number of robots in each.
-        spec: The robots' body.
+    The constructor's arguments are those of ``Spaces``.
 
     Attributes:
-        poses: ``(worlds, robots, 3)`` true poses, x, y, theta [m, m, rad].
         touched: ``(worlds,)`` whether some robot of a world touched anything in the last ``advance``.
     """
 
     def __init__(self, worlds: int, robots: int = 1, spec: RobotSpec | None = None) -> None:
-        self.spec = spec or RobotSpec()
-        self.poses = np.zeros((worlds, robots, 3))
+        super().__init__(worlds, robots, spec)
         self.touched = np.zeros(worlds, np.bool_)
-        self._plans: list[Floorplan | None] = [None] * worlds
-        self._specs = [self.spec] * worlds
-        self._spaces: list[pymunk.Space | None] = [None] * worlds
 
     def place(self, world: int, plan: Floorplan, poses: Sequence[Pose], spec: RobotSpec | None = None) -> None:
-        """Put one world's robots at rest at the given poses in a floor plan.
-
-        Args:
-            world: Which one.
-            plan: Its walls and pillars; pymunk hears of them when a robot first comes near something.
-            poses: One a robot.
-            spec: The body of this world's robots, if it is not the batch's.
-        """
-        if self._plans[world] is not plan:
-            self._plans[world], self._spaces[world] = plan, None
-        self._specs[world] = spec or self.spec
-        self.poses[world] = poses
+        """Put one world's robots at rest, where they touch nothing yet; see ``Spaces.place``."""
+        super().place(world, plan, poses, spec)
         self.touched[world] = False
 
     def advance(self, commands: NDArray[np.float64], duration: float, near: NDArray[np.bool_]) -> None:
@@ -91,15 +72,8 @@ class Physics:
             space.step(duration / steps)
         self.poses[world] = [(*body.position, math.remainder(body.angle, 2.0 * math.pi)) for body in bodies]
 
-    def _space(self, world: int) -> pymunk.Space:
-        """One world's space, built when it is first needed."""
-        space = self._spaces[world]
-        if space is None:
-            plan = self._plans[world]
-            assert plan is not None, "place() comes first"
-            space = self._spaces[world] = build_space(plan)
-            space.on_collision(begin=partial(self._touch, world))
-        return space
+    def _listen(self, world: int, space: pymunk.Space) -> None:
+        space.on_collision(begin=partial(self._touch, world))
 
     def _touch(self, world: int, arbiter: object, space: object, data: object) -> None:
         """Callback of pymunk: two shapes have met."""
@@ -149,49 +123,4 @@ def glide(near: NDArray[np.bool_], commands: NDArray[np.float64], duration: floa
         if near[world]:
             continue
         for robot in range(poses.shape[1]):
-            vx, vy = chord(poses[world, robot, 2], commands[world, robot, 0], commands[world, robot, 1], duration)
-            theta = poses[world, robot, 2] + commands[world, robot, 1] * duration
-            theta -= 2.0 * math.pi * math.floor(theta / (2.0 * math.pi) + 0.5)
-            poses[world, robot, 0] += vx * duration
-            poses[world, robot, 1] += vy * duration
-            poses[world, robot, 2] = theta
-
-
-@inlined
-def chord(heading: float, speed: float, rate: float, dt: float) -> tuple[float, float]:
-    """Velocity along the chord of the arc that a robot describes from ``heading`` in ``dt``."""
-    half = 0.5 * rate * dt
-    along = speed * (math.sin(half) / half if half != 0.0 else 1.0)
-    return along * math.cos(heading + half), along * math.sin(heading + half)
-
-
-def turn_wheels(speed: float, rate: float, body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
-    """Velocity callback of pymunk: what the wheels do, before contacts have their say."""
-    body.velocity = chord(body.angle, speed, rate, dt)
-    body.angular_velocity = rate
-
-
-def add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
-    """Put a new body in a space: a disc, or the robot's outline."""
-    if spec.outline:
-        body = pymunk.Body(spec.mass, pymunk.moment_for_poly(spec.mass, list(spec.outline)))
-        shapes: list[pymunk.Shape] = [pymunk.Poly(body, part) for part in spec.parts]
-    else:
-        body = pymunk.Body(spec.mass, pymunk.moment_for_circle(spec.mass, 0.0, spec.radius))
-        shapes = [pymunk.Circle(body, spec.radius)]
-    for shape in shapes:
-        shape.friction = 0.0  # the wheels, not the shell, decide how the robot turns
-    space.add(body, *shapes)
-    return body
-
-
-def build_space(plan: Floorplan) -> pymunk.Space:
-    """A space with the walls and pillars of a floor plan."""
-    space = pymunk.Space()
-    space.collision_slop = _SLOP
-    walls: list[pymunk.Shape] = [
-        pymunk.Segment(space.static_body, (x1, y1), (x2, y2), 0.0) for x1, y1, x2, y2 in plan.edges.tolist()
-    ]
-    walls += [pymunk.Circle(space.static_body, radius, (x, y)) for x, y, radius in plan.circles.tolist()]
-    space.add(*walls)
-    return space
+            glide_one(commands[world, robot], duration, poses[world, robot])

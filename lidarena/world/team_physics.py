@@ -1,6 +1,7 @@
 """Rigid-body motion of teams: robots that are near something move in pymunk, and who touches what is noted."""
 
 import math
+from collections.abc import Sequence
 from functools import partial
 from typing import Any
 
@@ -9,20 +10,17 @@ import pymunk
 from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf
-from lidarena.world.floorplan import Floorplan
-from lidarena.world.physics import Physics, add_robot, build_space, chord, turn_wheels
+from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.robots import RobotSpec
+from lidarena.world.spaces import Spaces, add_robot, glide_one, turn_wheels
 
 _WALL, _ROBOT = 0, 1  # pymunk's collision types
 
 
-class TeamPhysics(Physics):
-    """The pymunk spaces of a batch of teams.
+class TeamPhysics(Spaces):
+    """Worlds in which each robot is near something or not, and tells what it touches.
 
-    Args:
-        worlds: Number of worlds.
-        robots: Number of robots in each.
-        spec: The robots' body.
+    The constructor's arguments are those of ``Spaces``.
 
     Attributes:
         touched_wall: ``(worlds, robots)`` whether a robot touched a wall in the last ``advance``.
@@ -35,12 +33,12 @@ class TeamPhysics(Physics):
         self.touched_robot = np.zeros((worlds, robots), np.bool_)
         self._robots_of: dict[pymunk.Body, tuple[int, int]] = {}
 
-    def furnish(self, world: int, plan: Floorplan) -> None:
-        """Build the walls of one world, if they are not those that stand there already."""
-        if self._plans[world] is plan:
-            return
-        self._plans[world] = plan
-        space = self._spaces[world] = build_space(plan)
+    def place(self, world: int, plan: Floorplan, poses: Sequence[Pose], spec: RobotSpec | None = None) -> None:
+        """Put one world's robots at rest, where they touch nothing yet; see ``Spaces.place``."""
+        super().place(world, plan, poses, spec)
+        self.touched_wall[world] = self.touched_robot[world] = False
+
+    def _listen(self, world: int, space: pymunk.Space) -> None:
         space.on_collision(_ROBOT, _WALL, begin=self._note_wall)
         space.on_collision(_ROBOT, _ROBOT, begin=self._note_robots)
 
@@ -50,8 +48,8 @@ class TeamPhysics(Physics):
         Args:
             commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
             duration: [s].
-            near: ``(worlds, robots)`` whether a robot may touch something meanwhile. Whoever may touch a robot must be
-                marked like it; the others are moved along the chords of their arcs without asking pymunk.
+            near: ``(worlds, robots)`` whether a robot may touch something meanwhile. A robot that may touch a marked
+                one must be marked, too; the others are moved along the chords of their arcs without asking pymunk.
         """
         self.touched_wall[:] = self.touched_robot[:] = False
         for world in np.flatnonzero(near.any(axis=1)).tolist():
@@ -60,13 +58,13 @@ class TeamPhysics(Physics):
 
     def _push_some(self, world: int, robots: list[int], commands: NDArray[np.float64], duration: float) -> None:
         """As ``Physics._push``, for some robots of a world."""
-        steps = math.ceil(duration / self.spec.substep - 1e-9)
-        space = self._space(world)
+        spec, space = self._specs[world], self._space(world)
+        steps = math.ceil(duration / spec.substep - 1e-9)
         bodies = []
         for robot in robots:
             x, y, theta = self.poses[world, robot].tolist()
             speed, rate = commands[robot].tolist()
-            body = add_robot(space, self.spec)
+            body = add_robot(space, spec)
             for shape in body.shapes:
                 shape.collision_type = _ROBOT
             body.position, body.angle = (x, y), theta
@@ -97,9 +95,4 @@ def glide_apart(
         for robot in range(poses.shape[1]):
             if near[world, robot]:
                 continue
-            vx, vy = chord(poses[world, robot, 2], commands[world, robot, 0], commands[world, robot, 1], duration)
-            theta = poses[world, robot, 2] + commands[world, robot, 1] * duration
-            theta -= 2.0 * math.pi * math.floor(theta / (2.0 * math.pi) + 0.5)
-            poses[world, robot, 0] += vx * duration
-            poses[world, robot, 1] += vy * duration
-            poses[world, robot, 2] = theta
+            glide_one(commands[world, robot], duration, poses[world, robot])

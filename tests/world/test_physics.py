@@ -8,8 +8,9 @@ from hypothesis import strategies as st
 
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar
-from lidarena.world.physics import Physics, chord, may_touch
+from lidarena.world.physics import Physics, may_touch
 from lidarena.world.robots import RobotSpec
+from lidarena.world.spaces import chord
 
 HALL = Floorplan.from_shapes("hall", (0, 0, 20, 20), walls=[(15, 0, 15, 20)], start=(5, 5, 0))
 

@@ -11,7 +11,7 @@ from lidarena.base.random_streams import normal, uniform
 from lidarena.planning.team.moves import nearest_approach
 from lidarena.world.lidar import LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
 from lidarena.world.odometry import wrap
-from lidarena.world.physics import chord
+from lidarena.world.spaces import chord
 
 LOOK_AHEAD = 4
 """Cells along the way at which the lookahead point lies that robots are shown."""
