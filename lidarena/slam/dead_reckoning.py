@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf, take_next
-from lidarena.slam.estimator import EstimatorSettings, Floats, Sensing, sense
+from lidarena.slam.estimator import EstimatorSettings, Floats
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
@@ -14,6 +14,7 @@ from lidarena.slam.readings import Reading, ScanGeometry
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, compound_covariance, d_optimality
 from lidarena.world.odometry import deviations, move
+from lidarena.world.sensors import Sensing, sense
 
 
 class DeadReckoningEstimator(KnownPoseEstimator):

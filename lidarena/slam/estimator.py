@@ -10,11 +10,10 @@ from typing import Any, NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import merged
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
-from lidarena.world.lidar import LidarSpec, MapGeometry
+from lidarena.world.lidar import LidarSpec
 from lidarena.world.odometry import OdometryNoise
-from lidarena.world.sensors import Sensors, read_sensors
+from lidarena.world.sensors import Sensing
 
 Floats = NDArray[np.float64]
 
@@ -106,45 +105,6 @@ class EstimatorSettings(NamedTuple):
     lidar: LidarSpec
     resolution: float
     noise: OdometryNoise
-
-
-class Sensing(NamedTuple):
-    """What sensors are read from, ``W`` worlds with one robot each; see ``read_sensors``.
-
-    Attributes:
-        before: (W, 1, 3) true poses before the motion.
-        poses: (W, 1, 3) true poses after it.
-        plan: (W,) each world's floor plan.
-        streams: (W, 4) random streams.
-        noise: The odometry's.
-        lidar: The lidar.
-        bumper: Ranges below this are a collision [m].
-        geometry: The floor plans.
-        directions: (2, beams) cos and sin of the beams' angles.
-        sensors: What is measured; output.
-        period: Duration of the motion [s].
-    """
-
-    before: NDArray[np.float64]
-    poses: NDArray[np.float64]
-    plan: NDArray[np.int64]
-    streams: NDArray[np.uint64]
-    noise: OdometryNoise
-    lidar: LidarSpec
-    bumper: float
-    geometry: MapGeometry
-    directions: NDArray[np.float64]
-    sensors: Sensors
-    period: float
-
-
-@merged
-def sense(w: int, sensing: Sensing) -> None:
-    """Read the sensors of world w; for the kernels of estimators."""
-    read_sensors(
-        w, sensing.period, sensing.before, sensing.poses, sensing.plan, sensing.noise, sensing.lidar, sensing.bumper,
-        sensing.geometry, sensing.directions, sensing.streams, sensing.sensors,
-    )  # fmt: skip
 
 
 class BatchEstimator(ABC):

@@ -4,13 +4,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf, take_next
-from lidarena.slam.estimator import EstimatorSettings, Sensing, sense
+from lidarena.slam.estimator import EstimatorSettings
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.slam.readings import Reading, ScanGeometry
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
+from lidarena.world.sensors import Sensing, sense
 
 
 class TruePoseEstimator(KnownPoseEstimator):

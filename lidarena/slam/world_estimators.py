@@ -16,12 +16,11 @@ from lidarena.slam.estimator import (
     Floats,
     MapGrid,
     ScanSpec,
-    Sensing,
     WorldEstimator,
-    sense,
 )
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, d_optimality
 from lidarena.world.odometry import wrap
+from lidarena.world.sensors import Sensing, sense
 
 _METHODS = {"reset": ("pose", "grid"), "update": ("odometry", "scan", "time")}
 

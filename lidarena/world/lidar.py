@@ -114,6 +114,22 @@ class MapGeometry(NamedTuple):
     items: NDArray[np.int32]
 
 
+class Scanner(NamedTuple):
+    """The lidars of a batch of worlds, ready to scan.
+
+    Attributes:
+        lidar: What each of them is.
+        geometry: The floor plans as ``Lidar`` laid them out.
+        directions: (2, beams) cos and sin of the beams' angles.
+        plan: (W,) index of each world's floor plan in ``geometry``.
+    """
+
+    lidar: LidarSpec
+    geometry: MapGeometry
+    directions: NDArray[np.float64]
+    plan: NDArray[np.int64]
+
+
 class Lidar:
     """Casts the beams of many robots, each in one of several floor plans.
 

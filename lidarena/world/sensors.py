@@ -52,40 +52,44 @@ def empty_sensors(worlds: int, beams: int) -> Sensors:
     )
 
 
-@merged
-def read_sensors(
-    w: int,
-    period: float,
-    before: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    plan: NDArray[np.int64],
-    noise: OdometryNoise,
-    lidar: LidarSpec,
-    bumper: float,
-    geometry: MapGeometry,
-    directions: NDArray[np.float64],
-    streams: NDArray[np.uint64],
-    sensors: Sensors,
-) -> None:
-    """Measure in world w after a motion.
+class Sensing(NamedTuple):
+    """What sensors are read from, ``W`` worlds with one robot each; see ``sense``.
 
-    Args:
-        w: World.
-        period: Duration of the motion [s].
+    Attributes:
         before: (W, 1, 3) true poses before the motion.
         poses: (W, 1, 3) true poses after it.
-        plan: (W,) index of each world's floor plan.
+        plan: (W,) each world's floor plan.
+        streams: (W, 4) random streams.
         noise: The odometry's.
         lidar: The lidar.
         bumper: Ranges below this are a collision [m].
-        geometry: The floor plans as ``Lidar`` laid them out.
+        geometry: The floor plans.
         directions: (2, beams) cos and sin of the beams' angles.
-        streams: (W, 4) random streams.
-        sensors: Output.
+        sensors: What is measured; output.
+        period: Duration of the motion [s].
     """
-    read_odometry(w, w + 1, before, poses, noise, streams, sensors.readings)
-    cast_beams(w, w + 1, poses, plan, 0.0, NO_OUTLINE, geometry, directions, lidar, sensors.ranges)
-    sensors.fresh[w] = scan_is_due(w, period, lidar, sensors.since_scan)
+
+    before: NDArray[np.float64]
+    poses: NDArray[np.float64]
+    plan: NDArray[np.int64]
+    streams: NDArray[np.uint64]
+    noise: OdometryNoise
+    lidar: LidarSpec
+    bumper: float
+    geometry: MapGeometry
+    directions: NDArray[np.float64]
+    sensors: Sensors
+    period: float
+
+
+@merged
+def sense(w: int, sensing: Sensing) -> None:
+    """Read the sensors of world w after a motion; for the kernels of estimators."""
+    before, poses, sensors = sensing.before, sensing.poses, sensing.sensors
+    streams, lidar, geometry = sensing.streams, sensing.lidar, sensing.geometry
+    read_odometry(w, w + 1, before, poses, sensing.noise, streams, sensors.readings)
+    cast_beams(w, w + 1, poses, sensing.plan, 0.0, NO_OUTLINE, geometry, sensing.directions, lidar, sensors.ranges)
+    sensors.fresh[w] = scan_is_due(w, sensing.period, lidar, sensors.since_scan)
     if sensors.fresh[w]:
         add_range_noise(w, w + 1, lidar, streams, sensors.ranges, sensors.scans)
     dx, dy, dtheta = sensors.readings[w, 0, 0], sensors.readings[w, 0, 1], sensors.readings[w, 0, 2]
@@ -96,4 +100,4 @@ def read_sensors(
     least = lidar.max_range
     for k in range(sensors.ranges.shape[2]):
         least = min(least, sensors.ranges[w, 0, k])
-    sensors.collision[w] = least < bumper
+    sensors.collision[w] = least < sensing.bumper

@@ -12,7 +12,7 @@ from lidarena.base.random_streams import seed_stream
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
-from lidarena.world.sensors import Sensors, empty_sensors, read_sensors
+from lidarena.world.sensors import Sensing, Sensors, empty_sensors, sense
 
 HALL = Floorplan.from_shapes(
     "hall", (0, 0, 6, 4), walls=[(0, 0, 6, 0), (6, 0, 6, 4), (6, 4, 0, 4), (0, 4, 0, 0)], start=(3, 2, 0)
@@ -26,7 +26,8 @@ def measure(
     sensors: Sensors, w: int, before: np.ndarray, after: np.ndarray, streams: np.ndarray, noise: OdometryNoise
 ) -> None:
     plan = np.zeros(WORLDS, np.int64)
-    read_sensors(w, 0.2, before, after, plan, noise, SPEC, BUMPER, LIDAR.geometry, LIDAR.directions, streams, sensors)
+    place = (SPEC, BUMPER, LIDAR.geometry, LIDAR.directions)
+    sense(w, Sensing(before, after, plan, streams, noise, *place, sensors, 0.2))
 
 
 def ways(seed: int, steps: int) -> np.ndarray:

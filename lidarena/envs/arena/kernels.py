@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
-from lidarena.world.lidar import NO_OUTLINE, LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.lidar import NO_OUTLINE, MapGeometry, Scanner, add_range_noise, cast_beams, scan_is_due
 
 
 class Measurements(NamedTuple):
@@ -110,12 +110,9 @@ def sense(
     last: int,
     before: NDArray[np.float64],
     poses: NDArray[np.float64],
-    plan: NDArray[np.int64],
     goals: NDArray[np.float64],
     period: float,
-    lidar: LidarSpec,
-    geometry: MapGeometry,
-    directions: NDArray[np.float64],
+    scanner: Scanner,
     streams: NDArray[np.uint64],
     measurements: Measurements,
 ) -> None:
@@ -126,16 +123,14 @@ def sense(
         last: World after the last.
         before: (W, 1, 3) poses before the step.
         poses: (W, 1, 3) poses after it.
-        plan: (W,) index of each world's plan in the geometry.
         goals: (W, 2) [m].
         period: Duration of the step [s].
-        lidar: The lidar.
-        geometry: The worlds.
-        directions: (2, beams) cos and sin of the beams' angles.
+        scanner: The lidars; each world is a plan of its own.
         streams: (W, 4) random streams.
         measurements: Output.
     """
-    cast_beams(first, last, poses, plan, 0.0, NO_OUTLINE, geometry, directions, lidar, measurements.ranges)
+    lidar, geometry, directions = scanner.lidar, scanner.geometry, scanner.directions
+    cast_beams(first, last, poses, scanner.plan, 0.0, NO_OUTLINE, geometry, directions, lidar, measurements.ranges)
     for w in range(first, last):
         if scan_is_due(w, period, lidar, measurements.since_scan):
             add_range_noise(w, w + 1, lidar, streams, measurements.ranges, measurements.scans)

@@ -11,7 +11,7 @@ from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way
 from lidarena.envs.arena.options import ArenaOptions, OwnSize
 from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.lidar import MapGeometry, first_scan
+from lidarena.world.lidar import MapGeometry, Scanner, first_scan
 from lidarena.world.physics import Physics
 from lidarena.world.robots import RobotSpec
 
@@ -81,7 +81,6 @@ class ArenaCore:
             np.zeros(worlds),
         )
         self._near = np.zeros(worlds, np.bool_)
-        self._plan = np.arange(worlds)
         self._slots(0, 0)
 
     def _slots(self, edges: int, circles: int) -> None:
@@ -97,6 +96,7 @@ class ArenaCore:
             tile_start=np.repeat(np.arange(worlds) * (edges + circles), 2),
             items=np.zeros(worlds * (edges + circles), np.int32),
         )
+        self._scanner = Scanner(self.beam, self.geometry, self.directions, np.arange(worlds))
         for world, scenario in enumerate(self.scenarios):
             if scenario is not None:
                 self._furnish(world, scenario)
@@ -192,8 +192,8 @@ class ArenaCore:
 
     def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
         sense(
-            first, last, before, self.physics.poses, self._plan, self.goals, self.period, self.beam,
-            self.geometry, self.directions, self.streams, self.measurements,
+            first, last, before, self.physics.poses, self.goals, self.period, self._scanner, self.streams,
+            self.measurements,
         )  # fmt: skip
 
     @property

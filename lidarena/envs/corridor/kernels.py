@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import inlined, leaf, take_next
 from lidarena.base.random_streams import normal, uniform
 from lidarena.planning.team.moves import nearest_approach
-from lidarena.world.lidar import LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.lidar import Scanner, add_range_noise, cast_beams, scan_is_due
 from lidarena.world.odometry import wrap
 from lidarena.world.spaces import chord
 
@@ -269,24 +269,47 @@ def distance_to_goal(
     return length
 
 
+class TeamMotion(NamedTuple):
+    """What robots have done in a decision period.
+
+    Attributes:
+        before: (W, R, 3) poses before it.
+        poses: (W, R, 3) poses now.
+        streams: (W, 4) random streams.
+        fuzz: Standard deviation of the measured poses [m, rad].
+        period: [s].
+    """
+
+    before: NDArray[np.float64]
+    poses: NDArray[np.float64]
+    streams: NDArray[np.uint64]
+    fuzz: float
+    period: float
+
+
+class Ways(NamedTuple):
+    """How far it is from everywhere to each robot's goal.
+
+    Attributes:
+        ground: The floor.
+        fields: (W, R, rows, cols) each robot's lengths of the way [m].
+        goals: (W, R, 2) [m].
+    """
+
+    ground: Ground
+    fields: NDArray[np.float32]
+    goals: NDArray[np.float64]
+
+
 @leaf
 def sense(
     counter: NDArray[np.int64],
     last: int,
-    before: NDArray[np.float64],
-    poses: NDArray[np.float64],
-    plan: NDArray[np.int64],
-    streams: NDArray[np.uint64],
-    period: float,
+    motion: TeamMotion,
     radius: float,
     outline: NDArray[np.float64],
-    fuzz: float,
-    lidar: LidarSpec,
-    geometry: MapGeometry,
-    directions: NDArray[np.float64],
-    ground: Ground,
-    fields: NDArray[np.float32],
-    goals: NDArray[np.float64],
+    scanner: Scanner,
+    ways: Ways,
     measurements: TeamMeasurements,
 ) -> None:
     """Fill ``measurements`` of one world after another, taken from ``counter`` (1,) up to ``last``.
@@ -294,22 +317,16 @@ def sense(
     Args:
         counter: Shared by the threads.
         last: World after the last.
-        before: (W, R, 3) poses before the last period.
-        poses: (W, R, 3) poses now.
-        plan: (W,) index of each world's floor plan.
-        streams: (W, 4) random streams.
-        period: Of the decisions [s].
+        motion: What the robots have done.
         radius: Of the robots [m].
         outline: (n, 2) their corners [m]; (0, 2) for discs.
-        fuzz: Standard deviation of the measured poses [m, rad].
-        lidar: The lidar.
-        geometry: The floor plans as ``Lidar`` laid them out.
-        directions: (2, beams).
-        ground: The floor.
-        fields: (W, R, rows, cols) each robot's lengths of the way [m].
-        goals: (W, R, 2) [m].
+        scanner: The lidars.
+        ways: To the goals.
         measurements: Output.
     """
+    before, poses, streams, fuzz, period = motion
+    lidar, geometry, directions, plan = scanner
+    ground, fields, goals = ways
     w = take_next(counter)
     while w < last:
         cast_beams(w, w + 1, poses, plan, radius, outline, geometry, directions, lidar, measurements.ranges)

@@ -11,6 +11,8 @@ from lidarena.envs.corridor.kernels import (
     Ground,
     MotionNoise,
     TeamMeasurements,
+    TeamMotion,
+    Ways,
     apply_motion_noise,
     distance_to_goal,
     find_near,
@@ -21,7 +23,7 @@ from lidarena.envs.corridor.starts_and_goals import StartGoalSampler
 from lidarena.envs.worker_threads import on_threads
 from lidarena.planning.grid.grid_search import path_costs
 from lidarena.planning.team.grid_graph import grid_graph_of
-from lidarena.world.lidar import Lidar, first_scan
+from lidarena.world.lidar import Lidar, Scanner, first_scan
 from lidarena.world.load import load_floorplan
 from lidarena.world.team_physics import TeamPhysics
 
@@ -82,10 +84,12 @@ class CorridorCore:
 
     def _allocate(self) -> None:
         shape = (self.worlds, self.robots)
-        self._plan_of = np.zeros(self.worlds, np.int64)
+        self._scanner = Scanner(self.beam, self.lidar.geometry, self.lidar.directions, np.zeros(self.worlds, np.int64))
+        self._corners = self.robot.corners
         self.streams = np.zeros((self.worlds, 4), np.uint64)
         self.goals, self.starts = np.zeros((*shape, 2)), np.zeros((*shape, 2))
         self.fields = np.zeros((*shape, *self._costs.shape), np.float32)
+        self._ways = Ways(self.ground, self.fields, self.goals)
         self._speed_bias, self._stalled = np.zeros(shape), np.zeros(shape)
         self._near = np.zeros(shape, np.bool_)
         self.travelled = np.zeros(shape)
@@ -165,15 +169,12 @@ class CorridorCore:
 
     def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
         """Let the robots of worlds first … last - 1 sense."""
-        counter = np.array([first])
-        on_threads(
-            last - first,
-            lambda thread: sense(
-                counter, last, before, self.physics.poses, self._plan_of, self.streams, self.options.decision_period,
-                self.robot.radius, self.robot.corners, self.options.localization_noise, self.beam, self.lidar.geometry,
-                self.lidar.directions, self.ground, self.fields, self.goals, self.measurements,
-            ),
-        )  # fmt: skip
+        counter, options = np.array([first]), self.options
+        motion = TeamMotion(
+            before, self.physics.poses, self.streams, options.localization_noise, options.decision_period
+        )
+        arguments = (motion, self.robot.radius, self._corners, self._scanner, self._ways, self.measurements)
+        on_threads(last - first, lambda _: sense(counter, last, *arguments))
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Every array that makes up the worlds' state, by name."""

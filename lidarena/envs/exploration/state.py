@@ -10,12 +10,12 @@ from lidarena.envs.exploration.bumper import Bumper
 from lidarena.envs.exploration.floors import make_floors
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.envs.worker_threads import on_threads
-from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Sensing
+from lidarena.slam.estimator import BatchEstimator, EstimatorSettings
 from lidarena.slam.registry import make_estimator
 from lidarena.world.lidar import first_scan
 from lidarena.world.odometry import OdometryNoise
 from lidarena.world.physics import Physics, may_touch
-from lidarena.world.sensors import empty_sensors
+from lidarena.world.sensors import Sensing, empty_sensors
 
 RESOLUTION = 0.05
 """Side of a map cell, gmapping's δ [m]."""

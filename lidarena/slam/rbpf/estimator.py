@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf, take_next
 from lidarena.base.keyword_checks import check_range
-from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Floats, Sensing, map_arrays, sense
+from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Floats, map_arrays
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.filter_kernel import step_filter
 from lidarena.slam.rbpf.likelihood_field import Fields, tiles_in_use
@@ -16,6 +16,7 @@ from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.rbpf.scan_points import points_for
 from lidarena.slam.readings import Reading, ScanGeometry
+from lidarena.world.sensors import Sensing, sense
 
 MOST_PARTICLES = 1000
 """So many particles a filter can have."""

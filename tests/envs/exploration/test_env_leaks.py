@@ -10,7 +10,7 @@ from lidarena.envs import ExplorationEnv
 from lidarena.envs.exploration.state import ExplorationCore
 from lidarena.slam.rbpf.estimator import ParticleFilterEstimator
 from lidarena.world.floorplan import START_CLEARANCE
-from lidarena.world.sensors import read_sensors
+from lidarena.world.sensors import Sensing, sense
 
 ACTIONS = [0] * 8 + [1] * 8 + [0] * 8 + [2] * 8
 
@@ -27,19 +27,9 @@ def sense_then_filter(core: ExplorationCore, shift: tuple[float, float, float]) 
     def perceive(before: np.ndarray, first: int, last: int) -> None:
         assert isinstance(core.estimator, ParticleFilterEstimator)
         sensors, filters = core.sensors, core.estimator.filters
-        lidar = (START_CLEARANCE, core.lidar.geometry, core.lidar.directions)
-        read_sensors(
-            0,
-            core.options.decision_period,
-            before,
-            core.physics.poses,
-            core.plan,
-            core._noise,
-            core.beam,
-            *lidar,
-            core.streams,
-            sensors,
-        )
+        place = (core.beam, START_CLEARANCE, core.lidar.geometry, core.lidar.directions)
+        poses, period = core.physics.poses, core.options.decision_period
+        sense(0, Sensing(before, poses, core.plan, core.streams, core._noise, *place, sensors, period))
         core.physics.poses += shift
         filters.step(0, core.options.decision_period, sensors.readings[0, 0], sensors.scans[0, 0], core.streams[0])
 
