@@ -21,6 +21,10 @@ from lidarena.envs.seeds import Seeds, seeds_of
 _COUNTS_RIGHT = (1, 4)
 """Gymnasium's version from which its vector statistics count episodes right that begin in the step of an end."""
 
+Mode = AutoresetMode | str
+"""What happens where an episode has ended: Gymnasium's mode or its name."""
+SAME_STEP = AutoresetMode.SAME_STEP
+
 
 class BatchedWorlds(VectorEnv[Any, Any, Any]):
     """Environments that step together; by default one that ends begins its next episode in the same step.

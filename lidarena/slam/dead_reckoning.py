@@ -10,7 +10,7 @@ from lidarena.slam.estimator import EstimatorSettings, Floats
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
-from lidarena.slam.readings import Reading, ScanGeometry
+from lidarena.slam.readings import ScanGeometry, Share, reading_of
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, compound_covariance, d_optimality
 from lidarena.world.odometry import deviations, move
@@ -39,10 +39,10 @@ class DeadReckoningEstimator(KnownPoseEstimator):
         super().start(world, plan, origin, pose, rng)
         self.drift[world] = 0.0
 
-    def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
+    def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors, add up the odometry and map, world after world."""
         sense_and_reckon(
-            sensing, counter, last, thread, self.settings.resolution, self.parameters, self.estimate, self.drift,
+            sensing, share, self.geometry, self.parameters, self.estimate, self.drift,
             self.covariance, self.d_optimality, self.since, self.maps, self.outlines,
         )  # fmt: skip
 
@@ -54,10 +54,8 @@ class DeadReckoningEstimator(KnownPoseEstimator):
 @leaf
 def sense_and_reckon(
     sensing: Sensing,
-    counter: NDArray[np.int64],
-    last: int,
-    thread: int,
-    resolution: float,
+    share: Share,
+    geometry: ScanGeometry,
     parameters: FilterParameters,
     estimate: NDArray[np.float64],
     drift: NDArray[np.float64],
@@ -67,17 +65,14 @@ def sense_and_reckon(
     maps: OccupancyMaps,
     outlines: Outlines,
 ) -> None:
-    """Read the sensors, reckon and map, world after world from a counter (1,) that the threads share.
+    """Read the sensors, reckon and map, world after world.
 
     ``d_optimalities`` (worlds,) is set to the D-optimality; the other arrays are those of ``DeadReckoningEstimator``.
     """
-    geometry = ScanGeometry(sensing.directions, sensing.lidar.max_range, resolution)
-    w = take_next(counter)
-    while w < last:
+    w = take_next(share.counter)
+    while w < share.last:
         sense(w, sensing)
-        reading = Reading(
-            sensing.period, sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w]
-        )
+        reading = reading_of(w, sensing)
         dx, dy, dtheta = reading.motion[0], reading.motion[1], reading.motion[2]
         sx, sy, st = deviations(parameters.noise, dx, dy, dtheta)
         compound_covariance(estimate[w], drift[w], dx, dy, sx * sx, sy * sy, st * st)
@@ -86,5 +81,5 @@ def sense_and_reckon(
             for j in range(3):
                 covariance[w, k, j] = drift[w, k, j] + (COVARIANCE_FLOOR[k] if j == k else 0.0)
         d_optimalities[w] = d_optimality(covariance[w])
-        map_scan(w, reading, geometry, parameters, estimate[w], since, maps, outlines, thread)
-        w = take_next(counter)
+        map_scan(w, reading, geometry, parameters, estimate[w], since, maps, outlines, share.thread)
+        w = take_next(share.counter)

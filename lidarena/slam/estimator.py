@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
+from lidarena.slam.readings import ScanGeometry, Share
 from lidarena.world.lidar import LidarSpec
 from lidarena.world.odometry import OdometryNoise
 from lidarena.world.sensors import Sensing
@@ -150,9 +151,15 @@ class BatchEstimator(ABC):
         clear_map(self.maps, world, plan, origin)
         self.estimate[world] = pose
 
+    @property
+    def geometry(self) -> ScanGeometry:
+        """How its scans and grids are laid out."""
+        settings = self.settings
+        return ScanGeometry(settings.directions, settings.lidar.max_range, settings.resolution)
+
     @abstractmethod
-    def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
-        """Sense and estimate in worlds from ``counter`` (1,) on up to ``last`` - 1; runs on every thread at once."""
+    def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
+        """Sense and estimate in the worlds of a thread's share; runs on every thread at once."""
 
     def finish(self, sensing: Sensing, first: int, last: int) -> None:  # noqa: B027 - most have nothing to do
         """Do in worlds ``first`` … ``last`` - 1 what must not run on several threads; here nothing."""

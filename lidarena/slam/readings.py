@@ -5,6 +5,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import merged
+from lidarena.world.sensors import Sensing
+
 
 class ScanGeometry(NamedTuple):
     """How scans and grids are laid out.
@@ -34,3 +37,24 @@ class Reading(NamedTuple):
     motion: NDArray[np.float64]
     scan: NDArray[np.float32]
     fresh: bool
+
+
+class Share(NamedTuple):
+    """The worlds that a thread works through, each of them once whatever the other threads do.
+
+    Attributes:
+        counter: (1,) the next world; threads share it, see ``lidarena.base.jit.take_next``.
+        last: World after the last.
+        thread: Number of the thread.
+    """
+
+    counter: NDArray[np.int64]
+    last: int
+    thread: int
+
+
+@merged
+def reading_of(w: int, sensing: Sensing) -> Reading:
+    """What world w's sensors have measured."""
+    sensors = sensing.sensors
+    return Reading(sensing.period, sensors.readings[w, 0], sensors.scans[w, 0], sensors.fresh[w])

@@ -8,7 +8,7 @@ from lidarena.slam.estimator import EstimatorSettings
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
-from lidarena.slam.readings import Reading, ScanGeometry
+from lidarena.slam.readings import ScanGeometry, Share, reading_of
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
 from lidarena.world.sensors import Sensing, sense
@@ -26,10 +26,10 @@ class TruePoseEstimator(KnownPoseEstimator):
         self.covariance[:] = np.diag(COVARIANCE_FLOOR)
         self.d_optimality[:] = float(np.prod(COVARIANCE_FLOOR) ** (1 / 3))
 
-    def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
+    def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors and map with the true poses, world after world."""
         sense_and_map(
-            sensing, counter, last, thread, self.settings.resolution, self.parameters, self.estimate, self.since,
+            sensing, share, self.geometry, self.parameters, self.estimate, self.since,
             self.maps, self.outlines,
         )  # fmt: skip
 
@@ -41,25 +41,19 @@ class TruePoseEstimator(KnownPoseEstimator):
 @leaf
 def sense_and_map(
     sensing: Sensing,
-    counter: NDArray[np.int64],
-    last: int,
-    thread: int,
-    resolution: float,
+    share: Share,
+    geometry: ScanGeometry,
     parameters: FilterParameters,
     estimate: NDArray[np.float64],
     since: NDArray[np.float64],
     maps: OccupancyMaps,
     outlines: Outlines,
 ) -> None:
-    """Read the sensors and map with the true poses, world after world from a counter (1,) that the threads share."""
-    geometry = ScanGeometry(sensing.directions, sensing.lidar.max_range, resolution)
-    w = take_next(counter)
-    while w < last:
+    """Read the sensors and map with the true poses, world after world."""
+    w = take_next(share.counter)
+    while w < share.last:
         sense(w, sensing)
         for k in range(3):
             estimate[w, k] = sensing.poses[w, 0, k]
-        reading = Reading(
-            sensing.period, sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w]
-        )
-        map_scan(w, reading, geometry, parameters, estimate[w], since, maps, outlines, thread)
-        w = take_next(counter)
+        map_scan(w, reading_of(w, sensing), geometry, parameters, estimate[w], since, maps, outlines, share.thread)
+        w = take_next(share.counter)

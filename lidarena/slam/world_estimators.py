@@ -18,6 +18,7 @@ from lidarena.slam.estimator import (
     ScanSpec,
     WorldEstimator,
 )
+from lidarena.slam.readings import Share
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, d_optimality
 from lidarena.world.odometry import wrap
 from lidarena.world.sensors import Sensing, sense
@@ -77,9 +78,9 @@ class WorldEstimators(BatchEstimator):
         own: dict[str, Any] = {"rng": self._generators[world]} if self._draws else {}
         self.each[world].reset(self.estimate[world].copy(), grid, **own)
 
-    def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
+    def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors of world after world."""
-        sense_only(sensing, counter, last)
+        sense_only(sensing, share)
 
     def finish(self, sensing: Sensing, first: int, last: int) -> None:
         """Tell the estimators of worlds ``first`` … ``last`` - 1 what was measured, and take over what they believe."""
@@ -193,9 +194,9 @@ def _kind(thing: Any) -> str:
 
 
 @leaf
-def sense_only(sensing: Sensing, counter: NDArray[np.int64], last: int) -> None:
-    """Read the sensors of world after world from a counter (1,) that the threads share."""
-    w = take_next(counter)
-    while w < last:
+def sense_only(sensing: Sensing, share: Share) -> None:
+    """Read the sensors of world after world."""
+    w = take_next(share.counter)
+    while w < share.last:
         sense(w, sensing)
-        w = take_next(counter)
+        w = take_next(share.counter)

@@ -11,17 +11,6 @@ from lidarena.base.errors import ConfigError
 from tests.agents.training_cases import curve, equal, small, weights
 
 
-@pytest.fixture(scope="module")
-def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    return train(small(tmp_path_factory.mktemp("finished") / "run", "total_steps=128"), progress=False)
-
-
-@pytest.fixture
-def run(finished: Path, tmp_path: Path) -> Path:
-    """A run that a test may damage; a longer `total_steps` lets it go on."""
-    return Path(shutil.copytree(finished, tmp_path / "run"))
-
-
 @pytest.mark.parametrize(
     ("override", "message"),
     [

@@ -4,14 +4,13 @@ from typing import Any, ClassVar, Unpack
 
 import numpy as np
 from gymnasium.error import ResetNeeded
-from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.arena.episodes import ArenaEpisodes
 from lidarena.envs.arena.options import ArenaKeywords, ArenaOptions
 from lidarena.envs.base_env import SingleWorld
-from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
+from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.world.floorplan import Floorplan
 
 
@@ -174,12 +173,7 @@ class BatchedArena(BatchedWorlds):
     family = "arena"
 
     @takes_keywords_of(ArenaOptions)
-    def __init__(
-        self,
-        num_envs: int = 1,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
-        **keywords: Unpack[ArenaKeywords],
-    ) -> None:
+    def __init__(self, num_envs: int = 1, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[ArenaKeywords]) -> None:
         """Make the worlds; raises like ``ArenaEnv``."""
         worlds = whole_number_of_worlds(num_envs)
         super().__init__(ArenaEpisodes(worlds, ArenaOptions.checked(keywords)), autoreset_mode)

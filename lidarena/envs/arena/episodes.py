@@ -25,16 +25,10 @@ _FAR = 1.5
 
 
 class ArenaEpisodes:
-    """Runs episodes in ``worlds`` arenas; whoever owns it decides when a world is reset.
-
-    Args:
-        worlds: Number of worlds.
-        options: Checked keywords.
+    """Runs episodes in ``worlds`` arenas, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
     Attributes:
-        core: The worlds.
-        single_observation_space: Of one world.
-        single_action_space: Of one world.
+        core: The arenas.
         recorder: Paths for the picture, None unless the worlds are drawn.
     """
 

@@ -5,13 +5,12 @@ from typing import Any, Unpack
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import AutoresetMode
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_env import SingleWorld
-from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
+from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.corridor.drawing import draw_world
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
@@ -223,10 +222,7 @@ class BatchedCorridor(BatchedWorlds):
 
     @takes_keywords_of(CorridorOptions)
     def __init__(
-        self,
-        num_envs: int = 1,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
-        **keywords: Unpack[CorridorKeywords],
+        self, num_envs: int = 1, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[CorridorKeywords]
     ) -> None:
         """Make the worlds; raises like ``CorridorCentralEnv``."""
         worlds = whole_number_of_worlds(num_envs)

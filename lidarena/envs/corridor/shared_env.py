@@ -5,12 +5,11 @@ from typing import Any, ClassVar, Unpack
 
 import gymnasium as gym
 import numpy as np
-from gymnasium.vector import AutoresetMode
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import takes_keywords_of
-from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
+from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.episodes import Generators, Outcome, Seeds
@@ -97,10 +96,7 @@ class SharedCorridor(BatchedWorlds):
 
     @takes_keywords_of(CorridorOptions)
     def __init__(
-        self,
-        num_envs: int = 4,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
-        **keywords: Unpack[CorridorKeywords],
+        self, num_envs: int = 4, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[CorridorKeywords]
     ) -> None:
         """Make the worlds.
 

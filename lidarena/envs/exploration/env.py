@@ -3,11 +3,10 @@
 from typing import Any, Unpack
 
 from gymnasium.error import ResetNeeded
-from gymnasium.vector import AutoresetMode
 
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_env import SingleWorld
-from lidarena.envs.base_vector_env import BatchedWorlds, whole_number_of_worlds
+from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.exploration.episodes import ExplorationEpisodes
 from lidarena.envs.exploration.options import ExplorationKeywords, ExplorationOptions
 from lidarena.envs.exploration.state import ExplorationCore
@@ -185,10 +184,7 @@ class BatchedExploration(BatchedWorlds):
 
     @takes_keywords_of(ExplorationOptions)
     def __init__(
-        self,
-        num_envs: int = 1,
-        autoreset_mode: AutoresetMode | str = AutoresetMode.SAME_STEP,
-        **keywords: Unpack[ExplorationKeywords],
+        self, num_envs: int = 1, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[ExplorationKeywords]
     ) -> None:
         """Make the worlds; raises like ``ExplorationEnv``."""
         worlds = whole_number_of_worlds(num_envs)

@@ -27,16 +27,10 @@ _GAIN = 0.001
 
 
 class ExplorationEpisodes:
-    """Runs episodes in ``worlds`` worlds; whoever owns it decides when a world is reset.
-
-    Args:
-        worlds: Number of worlds.
-        options: Checked keywords.
+    """Runs episodes in ``worlds`` worlds, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
     Attributes:
         core: The worlds.
-        single_observation_space: Of one world.
-        single_action_space: Of one world.
         recorder: Paths for the picture, None unless the worlds are drawn.
     """
 

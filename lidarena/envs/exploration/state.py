@@ -11,6 +11,7 @@ from lidarena.envs.exploration.floors import make_floors
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.envs.worker_threads import on_threads
 from lidarena.slam.estimator import BatchEstimator, EstimatorSettings
+from lidarena.slam.readings import Share
 from lidarena.slam.registry import make_estimator
 from lidarena.world.lidar import first_scan
 from lidarena.world.odometry import OdometryNoise
@@ -24,14 +25,9 @@ _LEAST_BELIEVED_NOISE = 0.1
 
 
 class ExplorationCore:
-    """``worlds`` single-robot worlds with a lidar and SLAM, stepped together.
+    """``worlds`` single-robot worlds with a lidar and SLAM, of checked ``options``, stepped together.
 
-    World ``i`` depends on nothing but its own generator and commands: not on the other worlds, nor on their number, nor
-    on the number of threads.
-
-    Args:
-        worlds: Number of worlds.
-        options: Checked keywords.
+    World ``i`` depends on nothing but its own generator and commands.
 
     Attributes:
         physics: The true poses; everything that the robot may know is in the attributes below.
@@ -111,7 +107,7 @@ class ExplorationCore:
             self.options.decision_period,
         )  # fmt: skip
         estimator, counter = self.estimator, np.array([first])
-        on_threads(last - first, lambda thread: estimator.sense_and_estimate(sensing, counter, last, thread))
+        on_threads(last - first, lambda thread: estimator.sense_and_estimate(sensing, Share(counter, last, thread)))
         estimator.finish(sensing, first, last)
         self.bumper.feel(self.physics.poses, self.plan, self.sensors, first, last)
 

@@ -115,14 +115,7 @@ def wall_gap(x: float, y: float, walls: NDArray[np.float64], side: int) -> float
 
 @leaf
 def potential_at(
-    x: float,
-    y: float,
-    goal: NDArray[np.float64],
-    discs: NDArray[np.float64],
-    walls: NDArray[np.float64],
-    field: Field,
-    fills: NDArray[np.float64],
-    count: int,
+    x: float, y: float, goal: Rows, discs: Rows, walls: Rows, field: Field, fills: Rows, count: int
 ) -> float:
     """Total potential (eq. 5 plus the fills, eq. 15) at a point; inf inside an obstacle.
 
@@ -197,14 +190,7 @@ def _repulsion(
 
 @leaf
 def force_at(
-    x: float,
-    y: float,
-    goal: NDArray[np.float64],
-    discs: NDArray[np.float64],
-    walls: NDArray[np.float64],
-    field: Field,
-    fills: NDArray[np.float64],
-    count: int,
+    x: float, y: float, goal: Rows, discs: Rows, walls: Rows, field: Field, fills: Rows, count: int
 ) -> tuple[float, float]:
     """Total force -∇U (eqs. 2, 4, 6, 9 and 10, the last with its sign put right) at a point; arguments as above."""
     gx, gy = x - goal[0], y - goal[1]

@@ -15,7 +15,7 @@ from lidarena.slam.rbpf.likelihood_field import Fields, tiles_in_use
 from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.rbpf.scan_points import points_for
-from lidarena.slam.readings import Reading, ScanGeometry
+from lidarena.slam.readings import ScanGeometry, Share, reading_of
 from lidarena.world.sensors import Sensing, sense
 
 MOST_PARTICLES = 1000
@@ -55,11 +55,11 @@ class ParticleFilterEstimator(BatchEstimator):
         self.filters.start(world, plan, origin, pose)
         self.filters.state.estimate[world] = pose
 
-    def sense_and_estimate(self, sensing: Sensing, counter: NDArray[np.int64], last: int, thread: int) -> None:
+    def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors and run the filters of world after world."""
         filters = self.filters
         sense_and_filter(
-            sensing, counter, last, thread, filters.resolution, filters.parameters, filters.state, filters.maps,
+            sensing, share, self.geometry, filters.parameters, filters.state, filters.maps,
             filters.scratch,
         )  # fmt: skip
 
@@ -90,22 +90,18 @@ class ParticleFilterEstimator(BatchEstimator):
 @leaf
 def sense_and_filter(
     sensing: Sensing,
-    counter: NDArray[np.int64],
-    last: int,
-    thread: int,
-    resolution: float,
+    share: Share,
+    geometry: ScanGeometry,
     parameters: FilterParameters,
     state: FilterState,
     maps: OccupancyMaps,
     scratch: Scratch,
 ) -> None:
-    """Read the sensors and run the particle filter, world after world from a counter (1,) that the threads share."""
-    geometry = ScanGeometry(sensing.directions, sensing.lidar.max_range, resolution)
-    w = take_next(counter)
-    while w < last:
+    """Read the sensors and run the particle filter, world after world."""
+    w = take_next(share.counter)
+    while w < share.last:
         sense(w, sensing)
-        reading = Reading(
-            sensing.period, sensing.sensors.readings[w, 0], sensing.sensors.scans[w, 0], sensing.sensors.fresh[w]
+        step_filter(
+            w, reading_of(w, sensing), geometry, parameters, sensing.streams[w], state, maps, scratch, share.thread
         )
-        step_filter(w, reading, geometry, parameters, sensing.streams[w], state, maps, scratch, thread)
-        w = take_next(counter)
+        w = take_next(share.counter)
