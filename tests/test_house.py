@@ -130,22 +130,8 @@ def test_tests_lie_where_the_module_lies() -> None:
     assert not [shown(path) for path in tests if path not in placed]
 
 
-STILL_TESTED_ELSEWHERE = {
-    "lidarena/envs/arena/episodes.py",
-    "lidarena/envs/arena/state.py",
-    "lidarena/envs/corridor/options.py",
-    "lidarena/envs/exploration/episodes.py",
-    "lidarena/envs/exploration/options.py",
-}
-"""Modules that only tests of others go through; take them out as they get their own."""
-
-
 def test_every_module_with_behaviour_has_tests() -> None:
-    assert not [
-        shown(path)
-        for path in MODULES
-        if has_behaviour(path) and not mirrored(path) and shown(path) not in STILL_TESTED_ELSEWHERE
-    ]
+    assert not [shown(path) for path in MODULES if has_behaviour(path) and not mirrored(path)]
 
 
 def test_there_are_enough_tests() -> None:
