@@ -43,3 +43,12 @@ def check_refused(options: Any, keywords: dict[str, Any], says: str) -> None:
     with pytest.raises(LidarenaError, match=says) as refusal:
         options.checked(keywords)
     assert "\n" not in str(refusal.value)
+
+
+def check_all(options: Any, keywords: Any, steps: int, wrong: list[tuple[dict[str, Any], str]]) -> None:
+    """All of the above, for the keywords that are wrong in every family and for those that are in this one."""
+    check_editors_see_every_keyword(options, keywords)
+    check_defaults(options, steps)
+    check_a_changed_robot(options)
+    for given, says in WRONG + wrong:
+        check_refused(options, given, says)
