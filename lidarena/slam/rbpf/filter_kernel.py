@@ -9,9 +9,9 @@ from lidarena.base.jit import leaf, merged
 from lidarena.base.random_streams import normal, uniform
 from lidarena.slam.occupancy import OccupancyMaps, trace_scan
 from lidarena.slam.rbpf.copying import copy_matrix, copy_vector
-from lidarena.slam.rbpf.likelihood_field import clear_fields, copy_field
+from lidarena.slam.rbpf.likelihood_field import clear_fields, copy_field, field_of
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
-from lidarena.slam.rbpf.point_blocks import BLOCK
+from lidarena.slam.rbpf.point_blocks import BLOCK, PointBlocks, Workspace
 from lidarena.slam.rbpf.registration import register_points
 from lidarena.slam.rbpf.scan_matching import match, match_cost
 from lidarena.slam.rbpf.scan_points import extract_points
@@ -106,18 +106,19 @@ def update(
     begins = state.updates[w] == 0
     # neighbours lie within each other's stamp: take turns
     stride = np.int64(1) if begins else np.int64(parameters.stride)
-    points, motion, prior = scratch.points[s], scratch.poses[s, 0], scratch.poses[s, 1]
+    motion, prior = scratch.poses[s, 0], scratch.poses[s, 1]
     count = extract_points(
         scan, geometry.directions, geometry.max_range, parameters.points, state.updates[w] % stride, stride,
-        scratch.means[s], scratch.numbers[s], points, scratch.flat[s],
+        scratch.means[s], scratch.numbers[s], scratch.points[s], scratch.flat[s],
     )  # fmt: skip
-    chosen, matched = scratch.chosen[s], _choose(s, count, parameters.matcher.points, scratch)
-    reals, integers = scratch.work.reals[s], scratch.work.integers[s]
+    points = PointBlocks(scratch.points[s], count)
+    chosen = PointBlocks(scratch.chosen[s], _choose(s, count, parameters.matcher.points, scratch))
+    work = Workspace(scratch.work.reals[s], scratch.work.integers[s])
     local = inverse(load(state.motion_covariance[w], _LEAST_VARIANCE))
     if begins:
         clear_fields(state.fields, w)
     else:
-        _likeliest_motion(w, geometry.resolution, parameters, matched, state, maps, scratch, s)
+        _likeliest_motion(w, geometry.resolution, parameters, chosen, state, maps, scratch, s)
     for i in range(parameters.particles):
         if begins:
             state.ancestors[w, i] = i
@@ -128,10 +129,10 @@ def update(
             copy_vector(state.particles[w, i], prior)
             move(state.particles[w, i], motion[0], motion[1], motion[2])
             move(prior, state.motion[w, 0], state.motion[w, 1], state.motion[w, 2])
+            field = field_of(state.fields, w, i, maps.origin[w], geometry.resolution)
             likelihood, posterior = match(
-                state.fields.tiles[w], state.fields.table[w, i], maps.origin[w], geometry.resolution, chosen,
-                matched, reals, integers, parameters.matcher, prior, information, state.particles[w, i],
-            )  # fmt: skip
+                field, chosen, work, parameters.matcher, prior, information, state.particles[w, i]
+            )
             motion[0], motion[1], motion[2] = relative_motion(state.anchors[w, i], state.particles[w, i])
             state.log_weights[w, i] += parameters.likelihood_gain * likelihood
             state.scores[w, i] += likelihood
@@ -140,9 +141,8 @@ def update(
             copy_field(state.fields, w, _FIRST, i)
         else:
             register_points(
-                state.fields, w, i, state.particles[w, i], maps.origin[w], geometry.resolution, points, count, reals,
-                integers,
-            )  # fmt: skip
+                state.fields, w, i, state.particles[w, i], maps.origin[w], geometry.resolution, points, work
+            )
         copy_vector(state.anchors[w, i], state.particles[w, i])
     _normalise(w, state)
     _publish(w, geometry, parameters, scan, state, maps, scratch.outlines, s)
@@ -156,7 +156,7 @@ def _likeliest_motion(
     w: int,
     resolution: float,
     parameters: FilterParameters,
-    count: int,
+    points: PointBlocks,
     state: FilterState,
     maps: OccupancyMaps,
     scratch: Scratch,
@@ -164,14 +164,15 @@ def _likeliest_motion(
 ) -> None:
     """Which of some particles' sampled motions since the last scan fits the first particle's map best.
 
-    It is written to ``scratch.poses[s, 0]``; fitting are the first ``count`` points of ``scratch.chosen``.
+    It is written to ``scratch.poses[s, 0]``; ``points`` are fitted.
 
     What the odometry got wrong is the same for all particles: matching starts each of them where the one before it
     ended, and the first one at the best of several samples. Two steps of Gauss-Newton are then enough where four were
     needed. Beside the samples, the odometry itself is tried with some turn more and less.
     """
-    points, motion, pose = scratch.chosen[s], scratch.poses[s, 0], scratch.poses[s, 1]
-    reals, integers = scratch.work.reals[s], scratch.work.integers[s]
+    motion, pose = scratch.poses[s, 0], scratch.poses[s, 1]
+    work = Workspace(scratch.work.reals[s], scratch.work.integers[s])
+    field = field_of(state.fields, w, 0, maps.origin[w], resolution)
     least, samples = math.inf, min(parameters.starts, state.particles.shape[1])
     for i in range(samples + 2 * parameters.turned_starts):
         if i < samples:
@@ -182,10 +183,7 @@ def _likeliest_motion(
             dtheta += _TURN * (k // 2 + 1) * (1.0 if k % 2 == 0 else -1.0)
         copy_vector(pose, state.anchors[w, 0])
         move(pose, dx, dy, dtheta)
-        missed = match_cost(
-            state.fields.tiles[w], state.fields.table[w, 0], maps.origin[w], resolution, points, count, reals, integers,
-            pose,
-        )  # fmt: skip
+        missed = match_cost(field, points, work, pose)
         if missed < least:
             least = missed
             motion[0], motion[1], motion[2] = dx, dy, dtheta

@@ -13,7 +13,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf
+from lidarena.base.jit import inlined, leaf
 from lidarena.slam.rbpf.copying import copy_matrix
 
 SIGMA = 0.08
@@ -48,6 +48,22 @@ class Fields(NamedTuple):
     free_count: NDArray[np.int64]
 
 
+class ParticleField(NamedTuple):
+    """One particle's field, as its points are compared with it.
+
+    Attributes:
+        cells: (capacity · (TILE + 2)²,) the world's tiles in one row.
+        table: (A, B) the particle's table of them.
+        origin: (2,) the grid's lower-left corner [m].
+        resolution: Side of a cell [m].
+    """
+
+    cells: NDArray[np.uint16]
+    table: NDArray[np.int32]
+    origin: NDArray[np.float64]
+    resolution: float
+
+
 def empty_fields(worlds: int, particles: int, rows: int, columns: int) -> Fields:
     """Fields that know no wall, for grids of rows × columns cells; memory is taken up only as walls appear."""
     a, b = -(-rows // TILE), -(-columns // TILE)
@@ -67,6 +83,12 @@ def empty_fields(worlds: int, particles: int, rows: int, columns: int) -> Fields
 def tiles_in_use(fields: Fields) -> int:
     """How many tiles of every world, counted from the first, hold all that any table names."""
     return int(np.flatnonzero(fields.references.any(axis=0)).max(initial=0)) + 1
+
+
+@inlined
+def field_of(fields: Fields, w: int, particle: int, origin: NDArray[np.float64], resolution: float) -> ParticleField:
+    """The field of one particle, on a grid with its lower-left corner at ``origin`` (2,) and cells that large [m]."""
+    return ParticleField(fields.tiles[w].reshape(-1), fields.table[w, particle], origin, resolution)
 
 
 @leaf

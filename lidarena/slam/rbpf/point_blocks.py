@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
-from lidarena.slam.rbpf.likelihood_field import SECTORS, TILE, TILE_BITS
+from lidarena.slam.rbpf.likelihood_field import SECTORS, TILE, TILE_BITS, ParticleField
 
 BLOCK = 32
 """Points in a block."""
@@ -29,6 +29,18 @@ NEXT, ROW = np.uint64(BLOCK), np.uint64(3 * BLOCK)
 """From a cell's row among the integers to the next cell's, and to that of the cell above."""
 _REALS, _INTEGERS = 11, 12
 _ONE, MIDDLE = np.uint64(1), np.uint64(_SIDE + 1)
+
+
+class PointBlocks(NamedTuple):
+    """Points of a scan in the sensor's frame, a block at a time.
+
+    Attributes:
+        blocks: (blocks, 5, BLOCK) as ``scan_points.extract_points`` gives them.
+        size: How many points there are.
+    """
+
+    blocks: NDArray[np.float64]
+    size: int
 
 
 class Workspace(NamedTuple):
@@ -55,12 +67,12 @@ def empty_blocks(points: int) -> NDArray[np.float64]:
     return np.zeros((-(-points // BLOCK), 5, BLOCK))
 
 
-def as_blocks(points: NDArray[np.float64]) -> NDArray[np.float64]:
+def as_blocks(points: NDArray[np.float64]) -> PointBlocks:
     """(n, 5) points as blocks; what is left of the last one is zero."""
     blocks = empty_blocks(max(len(points), 1))
     for i, point in enumerate(points):
         blocks[i // BLOCK, :, i % BLOCK] = point
-    return blocks
+    return PointBlocks(blocks, len(points))
 
 
 @leaf
@@ -71,11 +83,8 @@ def locate(
     pose: NDArray[np.float64],
     cos: float,
     sin: float,
-    origin: NDArray[np.float64],
-    resolution: float,
-    table: NDArray[np.int32],
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
+    field: ParticleField,
+    work: Workspace,
 ) -> None:
     """Where a block's points fall, seen from a pose; a point outside the grid faces nothing.
 
@@ -86,13 +95,11 @@ def locate(
         pose: (3,).
         cos: Of the pose's heading.
         sin: Of it.
-        origin: (2,) the grid's lower-left corner [m].
-        resolution: [m].
-        table: (A, B) the particle's table of tiles.
-        reals: ``Workspace.reals``, one row.
-        integers: ``Workspace.integers``, one row.
+        field: Of the particle.
+        work: Of one thread; takes what is found.
     """
-    per_cell = 1.0 / resolution
+    reals, integers, table, origin = work.reals, work.integers, field.table, field.origin
+    per_cell = 1.0 / field.resolution
     start_u, start_v = (pose[0] - origin[0]) * per_cell, (pose[1] - origin[1]) * per_cell
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + _ROUND_UP
     across = np.int32(table.shape[1])

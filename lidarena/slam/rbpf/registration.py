@@ -6,14 +6,16 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf
-from lidarena.slam.rbpf.likelihood_field import CELL, FULL, SECTORS, SIGMA, TILE, TILE_BITS, Fields, own_tile
+from lidarena.slam.rbpf.likelihood_field import CELL, FULL, SECTORS, SIGMA, TILE, TILE_BITS, Fields, field_of, own_tile
 from lidarena.slam.rbpf.point_blocks import (
     BLOCK,
     CELLS,
     FACING,
     MIDDLE,
+    PointBlocks,
     U,
     V,
+    Workspace,
     corner,
     facing,
     gather_middle,
@@ -49,10 +51,8 @@ def register_points(
     pose: NDArray[np.float64],
     origin: NDArray[np.float64],
     resolution: float,
-    points: NDArray[np.float64],
-    count: int,
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
+    points: PointBlocks,
+    work: Workspace,
 ) -> None:
     """Stamp a scan's points, seen from a pose, into a particle's field where it does not know them yet.
 
@@ -63,18 +63,17 @@ def register_points(
         pose: (3,) x, y, theta.
         origin: (2,) lower-left corner of the grid [m].
         resolution: Side of a cell [m]; the stamps are drawn for ``CELL``.
-        points: (blocks, 5, BLOCK) as ``scan_points.extract_points`` gives them.
-        count: How many.
-        reals: Work space, see ``point_blocks.Workspace``.
-        integers: Work space.
+        points: The scan's.
+        work: Work space.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
     turn = pose[2] * (SECTORS / (2.0 * math.pi)) + 10.0 * SECTORS + 0.5
-    cells, table = fields.tiles[w].reshape(-1), fields.table[w, particle]
-    names, numbers = table.reshape(-1), points.reshape(-1)
-    for block in range((count + BLOCK - 1) // BLOCK):
-        here = min(BLOCK, count - block * BLOCK)
-        locate(numbers, block, here, pose, cos, sin, origin, resolution, table, reals, integers)
+    field = field_of(fields, w, particle, origin, resolution)
+    cells, names, numbers = field.cells, field.table.reshape(-1), points.blocks.reshape(-1)
+    reals, integers = work.reals, work.integers
+    for block in range((points.size + BLOCK - 1) // BLOCK):
+        here = min(BLOCK, points.size - block * BLOCK)
+        locate(numbers, block, here, pose, cos, sin, field, work)
         gather_middle(cells, names, here, integers)
         for k in range(here):
             i = np.uint64(k)
@@ -83,7 +82,7 @@ def register_points(
                 continue
             # what was read may be out of date by now: the last stamp reached this cell, too
             if facing(np.int32(cells[np.uint64(corner(names, integers, i)) + MIDDLE]), allowed) < _FRESH:
-                sector = np.int64(turn + points[block, 4, k]) & (SECTORS - 1)
+                sector = np.int64(turn + points.blocks[block, 4, k]) & (SECTORS - 1)
                 _stamp(fields, cells, w, particle, reals[i + U], reals[i + V], sector)
 
 

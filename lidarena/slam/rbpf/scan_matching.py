@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
-from lidarena.slam.rbpf.likelihood_field import FULL, SIGMA
+from lidarena.slam.rbpf.likelihood_field import FULL, SIGMA, ParticleField
 from lidarena.slam.rbpf.point_blocks import (
     AWAY_X,
     AWAY_Y,
@@ -32,8 +32,10 @@ from lidarena.slam.rbpf.point_blocks import (
     ROWS,
     WALL_X,
     WALL_Y,
+    PointBlocks,
     U,
     V,
+    Workspace,
     facing,
     gather_around,
     gather_middle,
@@ -63,14 +65,9 @@ class MatcherParameters(NamedTuple):
 
 @leaf
 def match(
-    tiles: NDArray[np.uint16],
-    table: NDArray[np.int32],
-    origin: NDArray[np.float64],
-    resolution: float,
-    points: NDArray[np.float64],
-    count: int,
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
+    field: ParticleField,
+    points: PointBlocks,
+    work: Workspace,
     parameters: MatcherParameters,
     prior: NDArray[np.float64],
     information: Symmetric,
@@ -82,24 +79,18 @@ def match(
     improved proposal (Grisetti et al. 2007, eq. 13), up to a constant that all particles share.
 
     Args:
-        tiles: (capacity, TILE + 2, TILE + 2) the world's tiles, see ``likelihood_field.Fields``.
-        table: (A, B) the particle's table of them.
-        origin: (2,) its lower-left corner [m].
-        resolution: [m].
-        points: (blocks, 5, BLOCK) the points to match, as ``scan_points.extract_points`` gives them.
-        count: How many.
-        reals: Work space, see ``point_blocks.Workspace``.
-        integers: Work space.
+        field: Of the particle.
+        points: Those to match.
+        work: Work space.
         parameters: Settings.
         prior: (3,) x̄, the pose that the odometry predicts.
         information: Ω, inverse covariance of the prior.
         pose: (3,) starting value; overwritten by the result.
     """
-    cells = tiles.reshape(-1)
     missed = quadratic = 0.0
     posterior = information
     for _ in range(parameters.iterations):
-        missed, hessian, gradient = _linearise(cells, table, origin, resolution, points, count, reals, integers, pose)
+        missed, hessian, gradient = _linearise(field, points, work, pose)
         quadratic, posterior, slope = _add_prior(parameters.deviation, prior, information, pose, hessian, gradient)
         step = times(inverse(posterior), slope)
         for k in range(3):
@@ -111,28 +102,18 @@ def match(
 
 
 @leaf
-def match_cost(
-    tiles: NDArray[np.uint16],
-    table: NDArray[np.int32],
-    origin: NDArray[np.float64],
-    resolution: float,
-    points: NDArray[np.float64],
-    count: int,
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
-    pose: NDArray[np.float64],
-) -> float:
-    """Σ (1 − f) of ``count`` points seen from ``pose`` (3,): how many are not on a known wall; see ``match``.
+def match_cost(field: ParticleField, points: PointBlocks, work: Workspace, pose: NDArray[np.float64]) -> float:
+    """Σ (1 − f) of the points seen from ``pose`` (3,): how many are not on a known wall; see ``match``.
 
     Read off the cells that the points lie in, which is coarser than ``_linearise`` and several times as fast.
     """
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    cells, names, numbers = tiles.reshape(-1), table.reshape(-1), points.reshape(-1)
-    missed = float(count)
-    for block in range((count + BLOCK - 1) // BLOCK):
-        here = min(BLOCK, count - block * BLOCK)
-        locate(numbers, block, here, pose, cos, sin, origin, resolution, table, reals, integers)
-        gather_middle(cells, names, here, integers)
+    names, numbers, integers = field.table.reshape(-1), points.blocks.reshape(-1), work.integers
+    missed = float(points.size)
+    for block in range((points.size + BLOCK - 1) // BLOCK):
+        here = min(BLOCK, points.size - block * BLOCK)
+        locate(numbers, block, here, pose, cos, sin, field, work)
+        gather_middle(field.cells, names, here, integers)
         for i in range(np.uint64(here)):
             missed -= facing(integers[i + CELLS], integers[i + FACING]) * (1.0 / FULL)
     return missed
@@ -140,26 +121,18 @@ def match_cost(
 
 @leaf
 def _linearise(
-    cells: NDArray[np.uint16],
-    table: NDArray[np.int32],
-    origin: NDArray[np.float64],
-    resolution: float,
-    points: NDArray[np.float64],
-    count: int,
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
-    pose: NDArray[np.float64],
+    field: ParticleField, points: PointBlocks, work: Workspace, pose: NDArray[np.float64]
 ) -> tuple[float, Symmetric, Vector]:
     """Σ (1 − f) of the points seen from ``pose`` (3,), and the Welsch-weighted normal equations; see ``match``."""
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    names, numbers = table.reshape(-1), points.reshape(-1)
+    names, numbers, reals = field.table.reshape(-1), points.blocks.reshape(-1), work.reals
     hxx = hxy = hyy = hxt = hyt = htt = gx = gy = gt = 0.0
-    missed = float(count)
-    for block in range((count + BLOCK - 1) // BLOCK):
-        here = min(BLOCK, count - block * BLOCK)
-        locate(numbers, block, here, pose, cos, sin, origin, resolution, table, reals, integers)
-        gather_around(cells, names, here, integers)
-        _fit(numbers, block, here, cos, sin, reals, integers)
+    missed = float(points.size)
+    for block in range((points.size + BLOCK - 1) // BLOCK):
+        here = min(BLOCK, points.size - block * BLOCK)
+        locate(numbers, block, here, pose, cos, sin, field, work)
+        gather_around(field.cells, names, here, work.integers)
+        _fit(numbers, block, here, cos, sin, work)
         for i in range(np.uint64(here)):  # by itself, since sums must be added in order
             f, fx, fy, pull = reals[i + FIT], reals[i + FIT_X], reals[i + FIT_Y], reals[i + PULL]
             nx, ny, nt = reals[i + WALL_X], reals[i + WALL_Y], reals[i + LEVER]
@@ -168,26 +141,19 @@ def _linearise(
             hxt, hyt, htt = hxt + fx * nt, hyt + fy * nt, htt + f * nt * nt
             gx, gy, gt = gx + pull * nx, gy + pull * ny, gt + pull * nt
     # a spline over cells widens a Gaussian by a quarter cell²
+    resolution = field.resolution
     scale = (SIGMA * SIGMA + 0.25 * resolution * resolution) / (resolution * FULL)
     return missed, (hxx, hxy, hxt, hyy, hyt, htt), (scale * gx, scale * gy, scale * gt)
 
 
 @leaf
-def _fit(
-    points: NDArray[np.float64],
-    block: int,
-    count: int,
-    cos: float,
-    sin: float,
-    reals: NDArray[np.float64],
-    integers: NDArray[np.int32],
-) -> None:
+def _fit(points: NDArray[np.float64], block: int, count: int, cos: float, sin: float, work: Workspace) -> None:
     """Field, slope along the normal, normal and its lever of a block's points, from the cells around them.
 
     Field and gradient are read off the quadratic B-spline over the nearest 3 × 3 cells: its gradient is continuous,
     where a bilinear one jumps from cell to cell and keeps Gauss-Newton from settling.
     """
-    base = np.uint64(block) * ROWS
+    base, reals, integers = np.uint64(block) * ROWS, work.reals, work.integers
     for i in range(np.uint64(count)):
         allowed, k = integers[i + FACING], i + CELLS
         a = reals[i + U] - np.int32(reals[i + U]) - 0.5  # from the cell's centre, ±½

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.slam.rbpf.likelihood_field import FULL, SECTORS, Fields, copy_field, empty_fields, own_tile, tiles_in_use
-from lidarena.slam.rbpf.point_blocks import as_blocks, empty_workspaces
+from lidarena.slam.rbpf.point_blocks import Workspace, as_blocks, empty_workspaces
 from lidarena.slam.rbpf.registration import register_points
 from tests.slam.rbpf.dense_field import dense
 from tests.slam.rbpf.test_likelihood_field import register
@@ -73,10 +73,10 @@ POSE = st.tuples(st.floats(0.8, 1.6), st.floats(0.8, 1.6), st.floats(-3.1, 3.1))
 def test_a_point_is_stamped_where_it_is_seen_and_faces_where_it_faces(
     pose: tuple[float, float, float], away: float, bearing: float, normal: float
 ) -> None:
-    fields, work = empty_fields(1, 1, 48, 48), empty_workspaces(1)
+    fields, work = empty_fields(1, 1, 48, 48), Workspace(*(rows[0] for rows in empty_workspaces(1)))
     sector = normal * SECTORS / (2 * math.pi)
     point = [away * math.cos(bearing), away * math.sin(bearing), math.cos(normal), math.sin(normal), sector]
-    arguments = (np.array(pose), np.zeros(2), 0.05, as_blocks(np.array([point])), 1, work.reals[0], work.integers[0])
+    arguments = (np.array(pose), np.zeros(2), 0.05, as_blocks(np.array([point])), work)
     register_points(fields, 0, 0, *arguments)
     field = dense(fields, 0)
     x, y = pose[0] + away * math.cos(bearing + pose[2]), pose[1] + away * math.sin(bearing + pose[2])

@@ -11,6 +11,7 @@ from lidarena.slam.rbpf.likelihood_field import (
     SECTORS,
     SIGMA,
     Fields,
+    ParticleField,
     clear_fields,
     copy_field,
     empty_fields,
@@ -18,6 +19,8 @@ from lidarena.slam.rbpf.likelihood_field import (
 from lidarena.slam.rbpf.point_blocks import (
     CELLS,
     FACING,
+    PointBlocks,
+    Workspace,
     as_blocks,
     empty_workspaces,
     facing,
@@ -28,6 +31,7 @@ from lidarena.slam.rbpf.registration import register_points
 from tests.slam.rbpf.dense_field import dense
 
 ORIGIN, POSE = np.zeros(2), np.zeros(3)
+WORK = Workspace(*(rows[0] for rows in empty_workspaces(1)))
 
 
 def nearest_eighth(value: float) -> float:
@@ -46,22 +50,21 @@ def stamp_oracle(whole: np.ndarray, x: float, y: float, sector: int) -> None:
                 whole[r, c] = value << 4 | sector
 
 
-def point(x: float, y: float, sector: int) -> np.ndarray:
+def point(x: float, y: float, sector: int) -> PointBlocks:
     angle = sector * 2 * math.pi / SECTORS
     return as_blocks(np.array([[x, y, math.cos(angle), math.sin(angle), float(sector)]]))
 
 
 def register(fields: Fields, particle: int, x: float, y: float, sector: int) -> None:
-    work = empty_workspaces(1)
-    register_points(fields, 0, particle, POSE, ORIGIN, 0.05, point(x, y, sector), 1, work.reals[0], work.integers[0])
+    register_points(fields, 0, particle, POSE, ORIGIN, 0.05, point(x, y, sector), WORK)
 
 
 def seen_at(fields: Fields, x: float, y: float, sector: int) -> float:
     """The field's value in the cell at (x, y), of walls that face ``sector``."""
-    work, table = empty_workspaces(1), fields.table[0, 0]
-    locate(point(x, y, sector).reshape(-1), 0, 1, POSE, 1.0, 0.0, ORIGIN, 0.05, table, work.reals[0], work.integers[0])
-    gather_middle(fields.tiles[0].reshape(-1), table.reshape(-1), 1, work.integers[0])
-    return facing(work.integers[0, CELLS], work.integers[0, FACING]) / FULL
+    field = ParticleField(fields.tiles[0].reshape(-1), fields.table[0, 0], ORIGIN, 0.05)
+    locate(point(x, y, sector).blocks.reshape(-1), 0, 1, POSE, 1.0, 0.0, field, WORK)
+    gather_middle(field.cells, field.table.reshape(-1), 1, WORK.integers)
+    return facing(WORK.integers[CELLS], WORK.integers[FACING]) / FULL
 
 
 @settings(max_examples=40, deadline=None)

@@ -6,7 +6,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.slam.rbpf.likelihood_field import SECTORS, TILE, empty_fields
+from lidarena.slam.rbpf.likelihood_field import SECTORS, TILE, ParticleField, empty_fields
 from lidarena.slam.rbpf.point_blocks import (
     AWAY_X,
     AWAY_Y,
@@ -19,6 +19,7 @@ from lidarena.slam.rbpf.point_blocks import (
     WHICH_TILE,
     U,
     V,
+    Workspace,
     as_blocks,
     empty_workspaces,
     facing,
@@ -46,7 +47,8 @@ def random_points(seed: int, count: int) -> np.ndarray:
 @given(SEED, st.integers(0, 100))
 def test_blocks_hold_every_point_once_and_zeros_behind_them(seed: int, count: int) -> None:
     points = random_points(seed, count)
-    blocks = as_blocks(points)
+    blocks, kept = as_blocks(points)
+    assert kept == count
     assert blocks.shape == (max(math.ceil(count / BLOCK), 1), 5, BLOCK)
     rows = blocks.transpose(0, 2, 1).reshape(-1, 5)
     np.testing.assert_array_equal(rows[:count], points)
@@ -54,12 +56,13 @@ def test_blocks_hold_every_point_once_and_zeros_behind_them(seed: int, count: in
 
 
 def located(points: np.ndarray, block: int, pose: np.ndarray, origin: np.ndarray) -> tuple[np.ndarray, np.ndarray, int]:
-    work, table = empty_workspaces(1), np.zeros((A, B), np.int32)
+    work = Workspace(*(rows[0] for rows in empty_workspaces(1)))
+    field = ParticleField(np.zeros(0, np.uint16), np.zeros((A, B), np.int32), origin, RES)
     count = min(BLOCK, len(points) - block * BLOCK)
-    numbers = as_blocks(points).reshape(-1)
+    numbers = as_blocks(points).blocks.reshape(-1)
     cos, sin = math.cos(pose[2]), math.sin(pose[2])
-    locate(numbers, block, count, pose, cos, sin, origin, RES, table, work.reals[0], work.integers[0])
-    return work.reals[0], work.integers[0], count
+    locate(numbers, block, count, pose, cos, sin, field, work)
+    return work.reals, work.integers, count
 
 
 @settings(max_examples=40, deadline=None)

@@ -5,8 +5,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.slam.rbpf.likelihood_field import FULL, SIGMA, empty_fields
-from lidarena.slam.rbpf.point_blocks import as_blocks, empty_blocks, empty_workspaces
+from lidarena.slam.rbpf.likelihood_field import FULL, SIGMA, Fields, ParticleField, empty_fields
+from lidarena.slam.rbpf.point_blocks import Workspace, as_blocks, empty_blocks, empty_workspaces
 from lidarena.slam.rbpf.registration import register_points
 from lidarena.slam.rbpf.scan_matching import MatcherParameters, _linearise, match, match_cost
 from lidarena.slam.rbpf.scan_points import PointParameters, extract_points
@@ -22,7 +22,15 @@ ROOM = Floorplan.from_shapes(
     start=(1.2, 1.2, 0.3),
 )
 TRUE = np.array(ROOM.start)
-REALS, INTEGERS = (rows[0] for rows in empty_workspaces(1))
+WORK = Workspace(*(rows[0] for rows in empty_workspaces(1)))
+ORIGIN = np.array([-1.0, -1.0])
+
+
+def registered(points: np.ndarray, pose: np.ndarray) -> tuple[Fields, ParticleField]:
+    """Fields of one particle that knows the points, seen from a pose; and that particle's."""
+    fields = empty_fields(1, 1, 112, 512)
+    register_points(fields, 0, 0, pose, ORIGIN, 0.05, as_blocks(points), WORK)
+    return fields, ParticleField(fields.tiles[0].reshape(-1), fields.table[0, 0], ORIGIN, 0.05)
 
 
 def scan_of(plan: Floorplan, pose: np.ndarray, noise: float = 0.0) -> tuple[np.ndarray, np.ndarray]:
@@ -51,13 +59,10 @@ def unpacked(m: Symmetric) -> np.ndarray:
 
 def matched(start: np.ndarray, information: np.ndarray, plan: Floorplan = ROOM, true: np.ndarray = TRUE) -> tuple:
     points, flat = scan_of(plan, true, 0.01)
-    fields = empty_fields(1, 1, 112, 512)
-    origin = np.array([-1.0, -1.0])
-    register_points(fields, 0, 0, true, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
-    pose = start.copy()
-    chosen = (as_blocks(points[flat]), int(flat.sum()), REALS, INTEGERS)
-    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, *chosen, MatcherParameters(iterations=25))
-    value, posterior = match(*arguments, start.copy(), packed(information), pose)
+    _, field = registered(points, true)
+    pose, parameters = start.copy(), MatcherParameters(iterations=25)
+    prior = (start.copy(), packed(information))
+    value, posterior = match(field, as_blocks(points[flat]), WORK, parameters, *prior, pose)
     return pose, unpacked(posterior), value
 
 
@@ -104,11 +109,9 @@ def spline_weights(a: float) -> tuple[np.ndarray, np.ndarray]:
 def test_blocks_of_points_are_linearised_as_one_by_one(dx: float, dy: float, dt: float, most: int) -> None:
     points, _ = scan_of(ROOM, TRUE, 0.01)
     points = points[:most]
-    fields, origin = empty_fields(1, 1, 112, 512), np.array([-1.0, -1.0])
-    register_points(fields, 0, 0, TRUE, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
+    fields, field = registered(points, TRUE)
     pose = TRUE + np.array([dx, dy, dt])
-    chosen = (as_blocks(points), len(points), REALS, INTEGERS)
-    missed, hessian, gradient = _linearise(fields.tiles[0].reshape(-1), fields.table[0, 0], origin, 0.05, *chosen, pose)
+    missed, hessian, gradient = _linearise(field, as_blocks(points), WORK, pose)
     expected = linearise_oracle(np.pad(dense(fields, 0), 1), points, pose)
     assert missed == pytest.approx(expected[0], abs=1e-9)
     assert unpacked(hessian) == pytest.approx(expected[1], abs=1e-9)
@@ -168,10 +171,7 @@ def test_every_second_point_is_one_of_all() -> None:
 @given(st.floats(0.05, 0.3), st.floats(-3, 3))
 def test_the_match_cost_is_least_where_the_scan_was_taken(away: float, direction: float) -> None:
     points, _ = scan_of(ROOM, TRUE)
-    fields, origin = empty_fields(1, 1, 112, 512), np.array([-1.0, -1.0])
-    register_points(fields, 0, 0, TRUE, origin, 0.05, as_blocks(points), len(points), REALS, INTEGERS)
-    chosen = (as_blocks(points), len(points), REALS, INTEGERS)
-    arguments = (fields.tiles[0], fields.table[0, 0], origin, 0.05, *chosen)
+    arguments = (registered(points, TRUE)[1], as_blocks(points), WORK)
     beside = TRUE + away * np.array([math.cos(direction), math.sin(direction), 0.0])
     assert 0.0 <= match_cost(*arguments, TRUE) < match_cost(*arguments, beside) <= len(points)
 
