@@ -20,7 +20,6 @@ from lidarena.envs.rewards import RewardTerms
 DOCUMENTED: list[tuple[type[Any], type[Any], RewardTerms]] = [
     (ExplorationEnv, ExplorationOptions, EXPLORATION),
     (ArenaEnv, ArenaOptions, ARENA),
-    (CorridorCentralEnv, CorridorOptions, CORRIDOR),
     (CorridorEnv, CorridorOptions, CORRIDOR),
 ]
 SECTIONS = ["Description", "Action space", "Observation space", "Rewards", "Starting state", "Episode end", "Info"]
@@ -64,8 +63,17 @@ def test_the_table_of_rewards_names_every_term_and_its_weights(
             assert (float(weight) if weight else None) == preset.get(name), (name, preset)
 
 
-@pytest.mark.parametrize(("environment", "_", "__"), DOCUMENTED)
-def test_sections_stand_in_gymnasiums_order(environment: type[Any], _: type[Any], __: RewardTerms) -> None:
+def test_the_central_environment_tells_where_it_differs_from_corridor_v0() -> None:
+    told = section(CorridorCentralEnv, "Arguments")
+    assert "``corridor_v0``" in told and "``corridor_v0``" in section(CorridorCentralEnv, "Rewards")
+    own = {cells[0].strip("`"): cells[2].strip("`") for cells in rows(CorridorCentralEnv, "Arguments")}
+    shared = {cells[0].strip("`") for cells in rows(CorridorEnv, "Arguments")}
+    assert own == {"max_episode_steps": str(CorridorOptions.max_episode_steps)}
+    assert own.keys() == {field.name for field in fields(CorridorOptions)} - shared
+
+
+@pytest.mark.parametrize("environment", [ExplorationEnv, ArenaEnv, CorridorCentralEnv, CorridorEnv])
+def test_sections_stand_in_gymnasiums_order(environment: type[Any]) -> None:
     assert re.findall(r"^## (.*)$", inspect.getdoc(environment) or "", re.M) == SECTIONS
 
 

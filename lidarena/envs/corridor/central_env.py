@@ -114,18 +114,10 @@ class CorridorCentralEnv(SingleWorld):
 
     ## Rewards
 
-    The sum of the robots' rewards, each of which is the sum of these terms times their weights as long as the robot is
-    on its way; ``info["reward_terms"]`` holds them by name, summed over the robots. ``reward`` is as in
-    ``corridor_v0``.
-
-    | Term | Value | `default` |
-    |------|-------|------|
-    | progress | metres by which the way to the goal became shorter | 1 |
-    | arrival | 1 on arrival | 10 |
-    | collision | -1 where something is touched | 10 |
-    | time | minus the seconds | 0.1 |
-    | closeness | minus the seconds times max(0, 1 - gap / 2 radii), of the gap to the nearest thing | 0 |
-    | turning | minus the radians turned | 0 |
+    The sum of the robots' rewards, each of which is as in ``corridor_v0``: by default ``progress`` along the way and
+    ``arrival`` count for it, ``collision`` and ``time`` against it. ``info["reward_terms"]`` holds the terms by name,
+    summed over the robots. ``reward`` chooses their weights, or is a function that is asked about each robot on its
+    way.
 
     ## Starting state
 
@@ -148,30 +140,12 @@ class CorridorCentralEnv(SingleWorld):
 
     ## Arguments
 
-    In full: ``CorridorOptions``.
+    Those of ``corridor_v0`` by the same names, such as ``map``, ``robots``, ``places``, ``action`` and ``lidar``; in
+    full: ``CorridorOptions``. Only the limit of steps goes by Gymnasium's name:
 
     | Name | Type | Default | Meaning |
     |------|------|---------|---------|
-    | `map` | str, plan or generator | `"office"` | floor plan |
-    | `robots` | int | `4` | size of the team |
-    | `places` | str or None | `None` | `"predefined"`, `"random"` or a `.scen` file; None: predefined if it can be |
-    | `starts` | (robots, 2) or None | `None` | x, y [m] in place of `places`; with `goals` |
-    | `goals` | (robots, 2) or None | `None` | x, y [m] |
-    | `action` | str | `"continuous"` | or `"discrete"` |
-    | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: TurtleBot3 Burger |
-    | `lidar` | str, dict or spec | `None` | the same with a ``LidarSpec``; None: 36 beams of 3.5 m, 1 cm of noise |
-    | `neighbours` | int | `0` | how many of the nearest robots tell where they are and how they move |
-    | `motion_noise` | float | `1.0` | factor on the noise of the wheels; 0: they obey |
-    | `localization_noise` | float | `0.02` | standard deviation of the poses in the info [m], [rad] |
-    | `stall_rate` | float | `0.0` | how often a robot is held up for some 3 s [1/s] |
-    | `decision_period` | float | `0.2` | time between decisions [s] |
-    | `goal_tolerance` | float | `0.15` | distance from the goal at which a robot has arrived [m] |
-    | `collision_ends` | bool | `True` | whether a robot that touches something is finished |
     | `max_episode_steps` | int | `1000` | truncates; -1 never |
-    | `observation` | str or observer | `"ranges"` | what each robot sees, see above |
-    | `reward` | str, dict or function | `"default"` | what a step of each robot is worth, see above |
-    | `expose_truth` | bool | `False` | give ``info["truth"]``, for evaluation |
-    | `render_mode` | str or None | `None` | or `"rgb_array"`, `"human"` |
 
     ## References
 
