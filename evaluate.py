@@ -13,7 +13,7 @@ from lidarena.base.errors import LidarenaError
 from lidarena.base.terminal import make_output_printable
 from lidarena.base.yaml_config import load_config
 from lidarena.evaluation import Comparison, ComparisonConfig, EpisodeError, compare
-from lidarena.evaluation.tables import note, terminal_table
+from lidarena.evaluation.tables import short_note, terminal_table
 from lidarena.evaluation.team_planning.team_experiment import TeamExperimentConfig, is_team_experiment
 from lidarena.evaluation.team_planning.team_tables import compare_planners, print_rows
 
@@ -41,7 +41,7 @@ def main(arguments: list[str] | None = None) -> int:
         print("interrupted; no results were written", file=sys.stderr)
         return 130
     out.print(terminal_table(comparison.rows, out.width))
-    out.print(note(comparison.rows), style="dim", highlight=False)
+    out.print(short_note(comparison.rows), style="dim", highlight=False)
     for line in _places(comparison):
         out.print(line, highlight=False, markup=False, soft_wrap=True)
     return 0

@@ -33,7 +33,7 @@ def test_a_comparison_from_start_to_end(file: str, tmp_path: Path, capsys: pytes
     out = tmp_path / "elsewhere"
     assert evaluate.main(["--config", file, "--out", str(out), "--set", "episodes=3", "videos=gif"]) == 0
     printed = capsys.readouterr()
-    assert "Corridor · 3 episodes each" in printed.out and "Explored (%)" in printed.out
+    assert "Corridor · 3 episodes each" in printed.out and "Explored" in printed.out
     assert f"pictures: {out}/pictures/overview.png and 3 more there" in printed.out
     assert f"videos:   {out}/videos/Corridor/crasher.gif and 1 more there" in printed.out
     assert "6/6 episodes" in printed.err

@@ -7,7 +7,8 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 from itertools import groupby
 
-from rich.console import Group
+from rich.box import SIMPLE_HEAD
+from rich.console import Console, Group
 from rich.table import Table
 from rich.text import Text
 
@@ -16,6 +17,8 @@ from lidarena.evaluation.results import Row, best, contenders, difference
 from lidarena.evaluation.statistics import LEAST_SAMPLES, Interval
 
 ABSENT = "–"
+PRINTED = 6
+"""So many measures are printed; all others are in the files."""
 LATEX_SIGNS = {
     "\\": r"\textbackslash{}",
     **{sign: f"\\{sign}" for sign in "&%$#_{}"},
@@ -52,6 +55,17 @@ def note(rows: Sequence[Row]) -> str:
                 "best, and counted in every episode that has a value."
             )
     return " ".join(sentences)
+
+
+def short_note(rows: Sequence[Row]) -> str:
+    """Return the sentence beneath the printed table; `note` says it all."""
+    known = any(row.episodes >= LEAST_SAMPLES for row in rows)
+    means = (
+        "Means over the same seeds, with their 95% intervals (± is half of one)"
+        if known
+        else "Means over the same seeds"
+    )
+    return f"{means}; bold is the best, and what cannot be told from it."
 
 
 def interval_text(interval: Interval, measure: Measure, signed: bool = False) -> tuple[str, str]:
@@ -126,25 +140,39 @@ def latex_text(rows: Sequence[Row]) -> str:
 
 
 def terminal_table(rows: Sequence[Row], width: int = 80) -> Group:
-    """Return the main measures for `rich.print`: a table per environment, one column per policy.
+    """Return the main measures for `rich.print`, at most `PRINTED`: a table per environment, a line per policy.
 
     Args:
         rows: Of the comparison.
-        width: Of the terminal; the intervals get lines of their own where it is short.
+        width: Of the terminal: intervals stand behind their means, or below them where it is short, or as half their
+            width where it is shorter still.
     """
-    tables: list[Table | Text] = []
-    for group in by_env(rows):
-        title = Text(f"{group[0].env} · {_episodes(group)} each")
-        table = Table(title=title, title_justify="left", min_width=40)
-        table.add_column("mean [95% interval]")
-        for row in group:
-            table.add_column(Text(row.policy), justify="right")
-        join = " " if 22 + 22 * len(group) <= width else "\n"
-        for measure in (measure for measure in _measured(group) if measure.main):
-            winners = best(group, measure)
-            table.add_row(Text(measure.heading), *(_terminal_cell(row, measure, winners, join) for row in group))
-        tables.append(table)
-    return Group(*tables)
+    return Group(*(part for group in by_env(rows) for part in (_terminal_table(group, width), Text(""))))
+
+
+def _terminal_table(group: Sequence[Row], width: int) -> Table:
+    measuring = Console(width=1000, file=io.StringIO())
+    for form in _FORMS:
+        table = _drawn(group, form)
+        if measuring.measure(table).maximum <= width:
+            break
+    return table
+
+
+def _drawn(group: Sequence[Row], form: "_Form") -> Table:
+    measures = [measure for measure in _measured(group) if measure.main][:PRINTED]
+    table = Table(title=Text(f"{group[0].env} · {_episodes(group)} each"), title_justify="left", box=SIMPLE_HEAD)
+    table.pad_edge, table.show_edge, table.collapse_padding = False, False, True
+    table.add_column("", overflow="fold")
+    for measure in measures:
+        table.add_column(Text(_two_lines(measure)), justify="right", overflow="fold")
+    for row in group:
+        cells = [
+            _terminal_cell(_interval(row, measure), measure, row.policy in best(group, measure), form)
+            for measure in measures
+        ]
+        table.add_row(Text(row.policy), *cells)
+    return table
 
 
 def _measured(rows: Sequence[Row]) -> list[Measure]:
@@ -223,7 +251,31 @@ def _latex_cell(row: Row, measure: Measure, group: Sequence[Row]) -> str:
     return f"{mean} {bounds}".strip()
 
 
-def _terminal_cell(row: Row, measure: Measure, winners: set[str], join: str) -> Text:
-    mean, bounds = interval_text(_interval(row, measure), measure)
-    text = Text(mean, style="bold" if row.policy in winners else "")
-    return text.append(f"{join}{bounds}", style="not bold dim") if bounds else text
+def _two_lines(measure: Measure) -> str:
+    """The heading with unit and direction below the title, which may itself take two lines."""
+    title = measure.title.replace(" per ", "\nper ")
+    unit = f"({measure.unit})" if measure.unit else ""
+    return f"{title}\n{unit} {measure.arrow}".strip()
+
+
+def _terminal_cell(interval: Interval, measure: Measure, bold: bool, form: "_Form") -> Text:
+    mean, bounds = interval_text(interval, measure)
+    text = Text(mean, style="bold" if bold else "")
+    return text.append(form(bounds, interval, measure), style="not bold dim") if bounds else text
+
+
+def _beside(bounds: str, interval: Interval, measure: Measure) -> str:
+    return f" {bounds}"
+
+
+def _below(bounds: str, interval: Interval, measure: Measure) -> str:
+    return f"\n{bounds}"
+
+
+def _half_below(bounds: str, interval: Interval, measure: Measure) -> str:
+    half = measure.scale * (interval.high - interval.low) / 2
+    return f"\n±{_rounded(half, 0 if measure.share else _decimals(half, half), signed=False)}"
+
+
+_Form = Callable[[str, Interval, Measure], str]
+_FORMS: tuple[_Form, ...] = (_beside, _below, _half_below)

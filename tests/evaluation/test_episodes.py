@@ -56,6 +56,10 @@ def test_measures_of_a_known_episode() -> None:
     assert values["trajectory_error"] == pytest.approx(0.0)
     assert values["odometry_error"] == pytest.approx(np.mean(0.1 * np.arange(steps + 1)))
     assert values["d_optimality"] == pytest.approx(np.exp(np.mean(np.log(1e-4 * np.arange(2, steps + 2)))))
+    assert values["d_optimality_per_metre"] == pytest.approx(values["d_optimality"])  # it drives as far in every step
+    assert (values["reached_95"], values["reached_99"]) == (1.0, 1.0)
+    assert values["path_at_95"] == pytest.approx(3.4) and values["path_at_99"] == pytest.approx(3.5)
+    assert 0.7 < values["explored_over_path"] < 0.9  # half of the corridor on average, then all of it
     assert values["entropy"] == 1.5 and np.isnan(values["entropy_gmapping"])
     assert values["return"] == pytest.approx(100 * (1 - 0.3 / 3.8))
     assert 0 < values["decision_time"] < 0.01

@@ -17,7 +17,8 @@ def short_episode(policy: str, seed: int) -> Episode:
 @pytest.mark.parametrize("policy", ["random", "frontier"])
 def test_everything_is_measured(policy: str) -> None:
     episode = short_episode(policy, seed=3)
-    values = {name: value for name, value in episode.measures.items() if name != "entropy_gmapping"}
+    seldom = ("entropy_gmapping", "path_at_95", "path_at_99")
+    values = {name: value for name, value in episode.measures.items() if name not in seldom}
     assert np.isfinite(list(values.values())).all()
     assert 0 < values["completeness"] < 1 and 0 < values["path_length"] < 25 * 0.1 + 0.1
     assert values["time"] == pytest.approx(0.2 * values["steps"])

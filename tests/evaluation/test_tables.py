@@ -3,6 +3,7 @@
 import csv
 import io
 import math
+from typing import Any
 
 import numpy as np
 import pytest
@@ -10,16 +11,18 @@ from hypothesis import given
 from hypothesis import strategies as st
 from rich.console import Console
 
+from lidarena.evaluation.measures import arena, corridor, exploration
+from lidarena.evaluation.measures.table_columns import Measure
 from lidarena.evaluation.statistics import Interval
-from lidarena.evaluation.tables import csv_text, interval_text, latex_text, markdown_text, terminal_table
+from lidarena.evaluation.tables import PRINTED, csv_text, interval_text, latex_text, markdown_text, terminal_table
 from tests.evaluation.rows import BY_NAME, row_of
 
 N = 12
 NOISE = np.random.default_rng(0).standard_normal(N)
 ROWS = [
-    row_of("random_walk", completeness=list(0.3 + 0.02 * NOISE), success=[0] * N, path_length=list(2 + 0.1 * NOISE)),
-    row_of("frontier", completeness=list(0.97 + 0.01 * NOISE), success=[1] * N, path_length=list(30 + NOISE)),
-    row_of("random_walk", "Env-2", completeness=[0.4], success=[0], path_length=[3.0]),
+    row_of("random_walk", completeness=list(0.3 + 0.02 * NOISE), collision=[1] * N, path_length=list(2 + 0.1 * NOISE)),
+    row_of("frontier", completeness=list(0.97 + 0.01 * NOISE), collision=[0] * N, path_length=list(30 + NOISE)),
+    row_of("random_walk", "Env-2", completeness=[0.4], collision=[1], path_length=[3.0]),
 ]
 
 
@@ -64,10 +67,10 @@ def test_csv_reads_back_unrounded() -> None:
 def test_markdown_shows_units_bold_and_differences() -> None:
     text = markdown_text(ROWS)
     assert "## Env-1 (12 episodes)" in text and "## Env-2 (1 episode)" in text
-    assert "| Policy | Explored (%) ↑ | Success (%) ↑ | Path (m) ↓ |" in text
+    assert "| Policy | Explored (%) ↑ | Collisions (%) ↓ | Path (m) ↓ |" in text
     assert "| random\\_walk | 30" in text  # Markdown must not make the name italic
     frontier = next(line for line in text.splitlines() if line.startswith("| frontier |"))
-    assert "**97" in frontier and "**100** [76, 100]" in frontier and "**30" in frontier
+    assert "**97" in frontier and "**0** [0, 24]" in frontier and "**30" in frontier
     assert "Difference from random\\_walk, seed by seed:" in text
     last = [line for line in text.splitlines() if line.startswith("| frontier |")][-1]
     assert "| +" in last and last.endswith("| – |")  # the paths of unequal explorers are not compared
@@ -95,10 +98,33 @@ def test_the_terminal_table_fits(width: int) -> None:
     console = Console(width=width, record=True, file=io.StringIO())
     console.print(terminal_table(ROWS, width))
     text = console.export_text()
-    assert "Env-1 · 12 episodes each" in text and "Path (m) ↓" in text and "[76, 100]" in text
-    assert ("100 [76, 100]" in text) == (width > 60)
+    assert "Env-1 · 12 episodes each" in text and "(m) ↓" in text
+    assert ("30.02 [29.63, 30.43]" in text) == (width > 60)
     assert max(len(line) for line in text.splitlines()) <= width
     assert "…" not in text
+
+
+def test_six_measures_of_policies_with_long_names_fit_a_small_terminal() -> None:
+    names = [measure.name for measure in BY_NAME.values() if measure.main and measure in exploration.MEASURES.table]
+    values = {name: list(30 + NOISE) for name in names if name != "collision"} | {"collision": [0.0] * N}
+    console = Console(width=80, record=True, file=io.StringIO())
+    console.print(terminal_table([row_of(name, **values) for name in ("frontier", "distance_advantage")], 80))
+    text = console.export_text()
+    assert "distance_advantage" in text and "D-optimality" in text and "±" in text and "[" not in text
+    assert len(names) == 6
+
+
+def test_no_more_than_six_measures_are_printed() -> None:
+    columns = tuple(Measure(f"m{k}", f"M{k}", main=True) for k in range(9))
+    console = Console(width=200, record=True, file=io.StringIO())
+    console.print(terminal_table([row_of("one", columns=columns, **{f"m{k}": [1.0] for k in range(9)})], 200))
+    text = console.export_text()
+    assert "M5" in text and "M6" not in text
+
+
+@pytest.mark.parametrize("module", [arena, corridor, exploration])
+def test_no_family_has_more_main_measures_than_are_printed(module: Any) -> None:
+    assert len([measure for measure in module.MEASURES.table if measure.main]) <= PRINTED
 
 
 def test_names_are_not_markup() -> None:

@@ -1,6 +1,7 @@
 """Teams of robots: how many arrived, when, and who collided."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,7 +18,7 @@ class CorridorMeasures(FamilyMeasures):
     """What is measured of a team; robots that never arrive count with the time at which the episode ended."""
 
     columns = (
-        *OUTCOME,
+        *(replace(column, main=False) for column in OUTCOME),
         Measure("path_length", "Path", "m", 1, "m", "low", needs="arrival", main=True),
         ARRIVAL,
         Measure("all_arrived", "All arrived", "%", 100, better="high", share=True, main=True),

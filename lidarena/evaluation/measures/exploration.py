@@ -1,6 +1,7 @@
 """Explorations: how much was mapped, on which way, how certain, and how right the final map is."""
 
 from collections.abc import Mapping
+from dataclasses import replace
 from typing import Any
 
 import cv2
@@ -11,6 +12,7 @@ from lidarena.envs.exploration.coverage import measure_coverage
 from lidarena.envs.exploration.options import ROBOT as DA_SLAM_ROBOT
 from lidarena.envs.registration import owner_of
 from lidarena.evaluation.measures.family_measures import FamilyMeasures
+from lidarena.evaluation.measures.over_path import explored_over_path, geometric_mean_over_path, path_at
 from lidarena.evaluation.measures.table_columns import COLLISION, SUCCESS, Measure
 from lidarena.evaluation.progress_curve import ProgressCurve
 from lidarena.evaluation.recording import Recording
@@ -26,24 +28,47 @@ _WITHIN_ONE = np.ones((3, 3), np.uint8)
 
 
 class ExplorationMeasures(FamilyMeasures):
-    """What is measured of an exploration; its ending may also be ``out of patience``: nothing new for too long."""
+    """What is measured of an exploration; its ending may also be ``out of patience``: nothing new for too long.
+
+    D is the D-optimality of the covariance that SLAM tells, det(Σ)^(1/3) (Carrillo et al. 2012), and s the true path:
+
+    - ``d_optimality`` ("per second"): geometric mean of D over the time of the episode, exp(Σ ln D_k / n) over its n
+      steps, which all take equally long. A policy lowers it by waiting where it is certain.
+    - ``d_optimality_per_metre``: geometric mean of D over the path, exp(Σ ln D_k Δs_k / Σ Δs_k), see
+      ``over_path.geometric_mean_over_path``. Standing still and turning on the spot count for nothing.
+    - ``path_at_95``, ``path_at_99``: path at which 95% and 99% were explored for the first time. Episodes that never
+      came so far have none; ``reached_95`` and ``reached_99`` tell the share of those that did.
+    - ``explored_over_path``: area under completeness over path, over the length up to which it is taken, one metre for
+      each square metre of what there is to explore; what was explored in the end counts on from where the path ends.
+    """
 
     columns = (
         COMPLETENESS,
-        SUCCESS,
-        COLLISION,
+        replace(SUCCESS, main=False),
+        replace(COLLISION, title="Collisions"),
         Measure("path_length", "Path", "m", 1, "m", "low", needs="completeness", main=True),
         Measure("time", "Time", "s", 1, "s", "low", needs="completeness", main=True),
-        Measure("d_optimality", "D-optimality", "10⁻³", 1000, better="low", needs="completeness", main=True),
+        Measure(
+            *("d_optimality_per_metre", "D-optimality per metre", "10⁻³", 1000),
+            better="low",
+            needs="completeness",
+            main=True,
+        ),
         Measure("trajectory_error", "Pose error", "cm", 100, "m", "low", needs="completeness", main=True),
-        Measure("map_iou", "Map IoU", "%", 100, better="high", needs="completeness", main=True),
+        Measure("d_optimality", "D-optimality per second", "10⁻³", 1000, better="low", needs="completeness"),
+        Measure("map_iou", "Map IoU", "%", 100, better="high", needs="completeness"),
+        Measure("reached_95", "Reached 95%", "%", 100, better="high", share=True),
+        Measure("path_at_95", "Path at 95%", "m", 1, "m", "low", needs="reached_95"),
+        Measure("reached_99", "Reached 99%", "%", 100, better="high", share=True),
+        Measure("path_at_99", "Path at 99%", "m", 1, "m", "low", needs="reached_99"),
+        Measure("explored_over_path", "Explored over path", "%", 100, better="high"),
         Measure("odometry_error", "Odometry error", "cm", 100, "m"),
         Measure("entropy", "Entropy", "nat", 1, "nat"),
-        Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat", main=True),
+        Measure("entropy_gmapping", "gmapping's entropy", "nat", 1, "nat"),
     )
     kept = (
         *("time", "completeness", "d_optimality", "entropy", "entropy_gmapping"),
-        *("truth.pose", "pose", "odometry_pose"),
+        *("truth.pose", "truth.path_length", "pose", "odometry_pose"),
     )
 
     def ending(self, recording: Recording) -> str:
@@ -55,18 +80,23 @@ class ExplorationMeasures(FamilyMeasures):
         return ending
 
     def measure(self, recording: Recording) -> Mapping[str, float]:
-        """See ``columns``; means are over the steps, D-optimality's is geometric."""
+        """See the class; what is not said there is a mean over the steps."""
+        path, explored = recording.series("truth.path_length"), recording.series("completeness")
         values = {
-            "path_length": float(recording.info.get("truth", {}).get("path_length", np.nan)),
+            "path_length": float(path[-1]),
             "d_optimality": float(geometric_mean(recording.steps_of("d_optimality"))),
+            "d_optimality_per_metre": geometric_mean_over_path(recording.series("d_optimality")[1:], path),
             "trajectory_error": _position_error(recording, "pose"),
             "odometry_error": _position_error(recording, "odometry_pose"),
             "map_iou": _map_quality(recording),
+            "explored_over_path": explored_over_path(explored, path, _area_to_explore(recording)),
         }
         values |= {name: float(np.mean(recording.steps_of(name))) for name in ("entropy", "entropy_gmapping")}
+        for percent in (95, 99):
+            way = path_at(percent / 100, explored, path)
+            values |= {f"path_at_{percent}": way, f"reached_{percent}": float(np.max(explored) >= percent / 100)}
         if recording.ending != "collision":  # also where no completeness ends an episode
-            explored = recording.series("completeness")[-1] >= EXPLORED
-            values["success"] = float(recording.ending == "success" or explored)
+            values["success"] = float(recording.ending == "success" or explored[-1] >= EXPLORED)
         return values
 
     def picture(self, recording: Recording) -> RobotTrace | None:
@@ -128,9 +158,21 @@ def _map_quality(recording: Recording) -> float:
     plan, belief = getattr(recording.env.unwrapped, "floorplan", None), _believed(recording.info)
     if plan is None or belief is None:
         return np.nan
+    return map_iou(plan, belief.cells, belief.origin, belief.resolution, _robot_of(recording))
+
+
+def _area_to_explore(recording: Recording) -> float:
+    """Area of the cells whose share is the completeness [m²]; NaN where the floor plan is not known."""
+    plan, resolution = getattr(recording.env.unwrapped, "floorplan", None), recording.info.get("resolution")
+    if plan is None or resolution is None:
+        return np.nan
+    return float(measure_coverage(plan, resolution, _robot_of(recording)).wanted.sum() * resolution**2)
+
+
+def _robot_of(recording: Recording) -> RobotSpec:
     owner = owner_of(recording.env, "options")
-    robot = getattr(getattr(owner, "options", None), "robot", DA_SLAM_ROBOT)
-    return map_iou(plan, belief.cells, belief.origin, belief.resolution, robot)
+    robot: RobotSpec = getattr(getattr(owner, "options", None), "robot", DA_SLAM_ROBOT)
+    return robot
 
 
 def map_iou(

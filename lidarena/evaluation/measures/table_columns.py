@@ -43,7 +43,12 @@ class Measure:
     @property
     def heading(self) -> str:
         """Title, unit and direction, such as ``"Path (m) ↓"``."""
-        return self.label + {"high": " ↑", "low": " ↓", None: ""}[self.better]
+        return f"{self.label} {self.arrow}".strip()
+
+    @property
+    def arrow(self) -> str:
+        """The direction that is better; empty where neither is."""
+        return {"high": "↑", "low": "↓", None: ""}[self.better]
 
 
 SUCCESS = Measure("success", "Success", "%", 100, better="high", share=True, main=True)
@@ -53,7 +58,7 @@ OUTCOME = (SUCCESS, COLLISION)
 EFFORT = (
     Measure("return", "Return"),
     Measure("steps", "Steps"),
-    Measure("decision_time", "Decision", "ms", 1000, "s", main=True),
+    Measure("decision_time", "Decision", "ms", 1000, "s"),
 )
 """Of every environment; behind a family's columns."""
 
