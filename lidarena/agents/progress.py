@@ -5,11 +5,14 @@ import time
 from typing import Protocol, TextIO
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, ProgressColumn, Task, TextColumn, TimeRemainingColumn
-from rich.text import Text
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn
+
+from lidarena.base.recent_rate import RecentRate, clock
 
 LINE_EVERY = 5.0
 """Seconds between two lines where there is no terminal."""
+_KNOWN_AFTER = 3.0
+"""Seconds after the first step, which compiles, before a rate is told."""
 
 
 class ProgressDisplay(Protocol):
@@ -51,8 +54,9 @@ class Lines:
     """A plain line every `LINE_EVERY` seconds, for log files."""
 
     def __init__(self, total: int, start: int, stream: TextIO) -> None:
-        self._total, self._start, self._stream = total, start, stream
-        self._began = self._last = time.perf_counter()
+        self._total, self._stream = total, stream
+        self._rate = RecentRate(total, _KNOWN_AFTER)
+        self._last = time.perf_counter()
         self._step = start
         self._shown: int | None = None
         self._summary = ""
@@ -60,7 +64,10 @@ class Lines:
     def update(self, step: int, summary: str = "") -> None:
         """Print a line if the last one is old enough."""
         self._step, self._summary = step, summary or self._summary
-        if time.perf_counter() - self._last >= LINE_EVERY:
+        now = time.perf_counter()
+        self._rate.note(step, now)
+        if now - self._last >= LINE_EVERY:
+            self._last = now
             self._print()
 
     def close(self) -> None:
@@ -69,50 +76,37 @@ class Lines:
             self._print()
 
     def _print(self) -> None:
-        self._last = time.perf_counter()
         self._shown = self._step
-        rate = (self._step - self._start) / max(self._last - self._began, 1e-9)
-        left = _clock(max(self._total - self._step, 0) / rate) if rate > 0 else "?"
         share = f"{min(self._step / self._total, 1):.0%}"
-        parts = [f"{self._step:,} of {self._total:,} steps ({share})", f"{rate:,.0f} steps/s", f"{left} left"]
-        print("  ".join([*parts, self._summary]).rstrip(), file=self._stream, flush=True)
+        parts = [f"{self._step:,} of {self._total:,} steps ({share})", *_speed(self._rate), self._summary]
+        print("  ".join(part for part in parts if part), file=self._stream, flush=True)
 
 
 class Bar:
     """A bar with rate and remaining time."""
 
     def __init__(self, total: int, start: int, stream: TextIO) -> None:
+        columns = (TextColumn("{task.fields[speed]}"), TextColumn("{task.fields[summary]}"))
         self._progress = Progress(
-            TextColumn("training"),
-            BarColumn(),
-            MofNCompleteColumn(),
-            _Rate(),
-            TimeRemainingColumn(),
-            TextColumn("{task.fields[summary]}"),
-            console=Console(file=stream),
+            TextColumn("training"), BarColumn(), MofNCompleteColumn(), *columns, console=Console(file=stream)
         )
         self._progress.start()
-        self._total = total
-        self._task = self._progress.add_task("training", total=total, completed=start, summary="")
+        self._total, self._rate = total, RecentRate(total, _KNOWN_AFTER)
+        self._task = self._progress.add_task("training", total=total, completed=start, summary="", speed="")
 
     def update(self, step: int, summary: str = "") -> None:
         """Move the bar."""
+        self._rate.note(step, time.perf_counter())
         if summary:
             self._progress.update(self._task, summary=summary)
-        self._progress.update(self._task, completed=min(step, self._total))
+        speed = "  ".join(_speed(self._rate))
+        self._progress.update(self._task, completed=min(step, self._total), speed=speed)
 
     def close(self) -> None:
         """Stop drawing; the last state stays on the screen."""
         self._progress.stop()
 
 
-class _Rate(ProgressColumn):
-    def render(self, task: Task) -> Text:
-        speed = task.finished_speed or task.speed
-        return Text(f"{speed:,.0f} steps/s" if speed else "", style="progress.data.speed")
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(round(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02}:{rest:02}" if hours else f"{minutes}:{rest:02}"
+def _speed(rate: RecentRate) -> list[str]:
+    """Recent rate and remaining time; nothing while they are not known."""
+    return [] if rate.rate is None else [f"{rate.rate:,.0f} steps/s", f"{clock(rate.left)} left"]

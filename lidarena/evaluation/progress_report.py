@@ -6,7 +6,9 @@ from time import perf_counter
 from typing import Protocol
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn
+
+from lidarena.base.recent_rate import RecentRate, clock
 
 LOG_EVERY = 10.0
 """Seconds between two lines where there is no terminal."""
@@ -33,38 +35,38 @@ def report_progress(total: int, console: Console) -> Iterator[Advance]:
     if not console.is_terminal:
         yield _Lines(total, console)
         return
-    columns = (TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TextColumn("{task.fields[rate]}"))
-    times = (
-        TimeElapsedColumn(),
-        TextColumn("elapsed,"),
-        TimeRemainingColumn(),
-        TextColumn("left · {task.fields[last]}"),
-    )
-    with Progress(*columns, *times, console=console, transient=True) as bar:
-        task = bar.add_task("", total=total, rate="", last="")
-        begin = perf_counter()
+    columns = (TextColumn("episodes"), BarColumn(), MofNCompleteColumn(), TimeElapsedColumn())
+    text = TextColumn("elapsed, {task.fields[left]} left · {task.fields[last]}")
+    with Progress(*columns, text, console=console, transient=True) as bar:
+        task = bar.add_task("", total=total, left="?", last="")
+        rate = _begun(total, perf_counter())
 
         def advance(what: str) -> None:
             bar.advance(task)
-            rate = bar.tasks[0].completed / max(perf_counter() - begin, 1e-9)
-            bar.update(task, rate=f"{rate:.2f}/s", last=what)
+            rate.note(bar.tasks[0].completed, perf_counter())
+            bar.update(task, left=clock(rate.left), last=what)
 
         yield advance
+
+
+def _begun(total: int, now: float) -> RecentRate:
+    rate = RecentRate(total)
+    rate.note(0, now)
+    return rate
 
 
 class _Lines:
     def __init__(self, total: int, console: Console) -> None:
         self.total, self.console = total, console
-        self.done, self.begin = 0, perf_counter()
-        self.last = self.begin
+        self.done, self.last = 0, perf_counter()
+        self.rate = _begun(total, self.last)
 
     def __call__(self, what: str) -> None:
         self.done += 1
         now = perf_counter()
+        self.rate.note(self.done, now)
         if self.done < self.total and now - self.last < LOG_EVERY:
             return
         self.last = now
-        rate = self.done / max(now - self.begin, 1e-9)
-        left = (self.total - self.done) / rate
-        line = f"{self.done}/{self.total} episodes, {rate:.2f}/s, {left:.0f} s left (last: {what})"
+        line = f"{self.done}/{self.total} episodes, {clock(self.rate.left)} left (last: {what})"
         self.console.print(line, highlight=False, markup=False, soft_wrap=True)

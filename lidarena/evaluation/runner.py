@@ -18,6 +18,7 @@ import numba
 
 from lidarena.base.errors import LidarenaError
 from lidarena.base.worker_processes import worker_pool
+from lidarena.envs.compilation import announced_compilation, keep_quiet
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
 from lidarena.evaluation.participants import make_participants
@@ -106,7 +107,9 @@ def dry_run(config: ComparisonConfig) -> None:
     """
     pairs = [(env, policy) for env in config.envs for policy in config.policies]
     tasks = [Task(env, policy, config.seed, config.pictures, max_steps=DRY_RUN_STEPS) for env, policy in pairs]
-    for task, episode in zip(tasks, run_tasks(tasks, workers=1), strict=True):
+    with announced_compilation():
+        episodes = run_tasks(tasks, workers=1)
+    for task, episode in zip(tasks, episodes, strict=True):
         if episode.picture is not None:
             failure = _guarded(partial(_try_picture, episode.picture))
             if isinstance(failure, _Failure):
@@ -175,6 +178,7 @@ def _prepare_worker() -> None:
     signal.signal(signal.SIGINT, signal.SIG_DFL)  # Ctrl-C ends a worker without a traceback of its own
     numba.set_num_threads(1)
     cv2.setNumThreads(1)
+    keep_quiet()  # the dry run has compiled and said so
 
 
 def _as_they_end(pool: ProcessPoolExecutor, tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Failure]]:

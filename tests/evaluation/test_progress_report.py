@@ -18,9 +18,9 @@ def test_lines_where_there_is_no_terminal(monkeypatch: pytest.MonkeyPatch) -> No
             advance(f"episode [{number}]")
     lines = stream.getvalue().splitlines()
     assert lines == [
-        "3/8 episodes, 0.25/s, 20 s left (last: episode [2])",
-        "6/8 episodes, 0.25/s, 8 s left (last: episode [5])",
-        "8/8 episodes, 0.25/s, 0 s left (last: episode [7])",
+        "3/8 episodes, 0:20 left (last: episode [2])",
+        "6/8 episodes, 0:08 left (last: episode [5])",
+        "8/8 episodes, 0:00 left (last: episode [7])",
     ]
 
 
