@@ -34,11 +34,12 @@ def test_a_comparison_from_start_to_end(file: str, tmp_path: Path, capsys: pytes
     assert evaluate.main(["--config", file, "--out", str(out), "--set", "episodes=3", "videos=gif"]) == 0
     printed = capsys.readouterr()
     assert "Corridor · 3 episodes each" in printed.out and "Explored" in printed.out
-    assert f"pictures: {out}/pictures/overview.png and 3 more there" in printed.out
+    assert f"pictures: {out}/pictures/plane.png and 4 more there" in printed.out
     assert f"videos:   {out}/videos/Corridor/crasher.gif and 1 more there" in printed.out
     assert "6/6 episodes" in printed.err
     assert {path.name for path in out.iterdir()} == {
         RESULTS_FILE,
+        "front.json",
         "table.csv",
         "table.md",
         "table.tex",

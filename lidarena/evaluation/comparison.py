@@ -6,9 +6,11 @@ from pathlib import Path
 
 from rich.console import Console
 
-from lidarena.evaluation.comparison_config import ComparisonConfig
+from lidarena.evaluation.comparison_config import ComparisonConfig, PolicyEntry
 from lidarena.evaluation.participants import check
 from lidarena.evaluation.pictures import Cell, draw_pictures
+from lidarena.evaluation.plane import FRONT_FILE, planes_of, pooled, write_front
+from lidarena.evaluation.plane_picture import draw_planes
 from lidarena.evaluation.progress_report import report_progress
 from lidarena.evaluation.results import (
     RESULTS_FILE,
@@ -61,7 +63,7 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
     console = console or Console(quiet=True)
     check_folder(config.folder)
     check(config)
-    count = len(config.envs) * len(config.policies)
+    count = len(config.envs) * len(config.participants)
     console.print(f"trying {count} pairs of environment and policy", highlight=False)
     dry_run(config)
     found: list[list[Cell]] = []
@@ -72,8 +74,13 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
         found.extend(_run(config, folder / "videos", console))
         rows.extend(summarise(cell.env.label, cell.policy.title, cell.episodes) for line in found for cell in line)
         write_tables(folder, config, rows)
+        planes = planes_of(rows, config.participants)
+        whole = pooled(planes, _reference(config.participants))
+        if planes:
+            write_front(folder / FRONT_FILE, planes, whole)
         if config.pictures:
-            drawn.extend(path.relative_to(folder) for path in draw_pictures(found, folder / "pictures"))
+            files = draw_planes(planes, whole, folder / "pictures") + draw_pictures(found, folder / "pictures")
+            drawn.extend(path.relative_to(folder) for path in files)
 
     earlier = write_results_folder(config.folder, fill)
     videos = sorted((config.folder / "videos").rglob("*.*"))
@@ -91,11 +98,16 @@ def write_tables(folder: Path, config: ComparisonConfig, rows: Sequence[Row]) ->
         (folder / name).write_text(text, encoding="utf-8")
 
 
+def _reference(policies: Sequence[PolicyEntry]) -> str:
+    """The policy over which the values of all environments are pooled: `frontier`, or else the first."""
+    return next((policy.title for policy in policies if policy.name == "frontier"), policies[0].title)
+
+
 def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[Cell]]:
     tasks = list_tasks(config, videos)
     with report_progress(len(tasks), console) as advance:
         episodes = iter(run_tasks(tasks, config.workers, lambda task: advance(str(task))))
     return [
-        [Cell(env, policy, [next(episodes) for _ in config.seeds(env)]) for policy in config.policies]
+        [Cell(env, policy, [next(episodes) for _ in config.seeds(env)]) for policy in config.participants]
         for env in config.envs
     ]

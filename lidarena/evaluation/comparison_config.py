@@ -1,6 +1,7 @@
 """The comparison file: which policies are measured in which environments, and how often."""
 
 from collections import Counter
+from itertools import product
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -10,6 +11,8 @@ from lidarena.base.yaml_config import ConfigModel
 
 EVALUATION_KEYWORDS = ("expose_truth", "render_mode")
 """Keywords of the environments that the evaluation itself sets."""
+SHIPPED = "pretrained:"
+"""What the names of shipped agents begin with."""
 
 
 def _named(key: str) -> BeforeValidator:
@@ -60,24 +63,41 @@ class PolicyEntry(ConfigModel):
 
     Attributes:
         name: Of a baseline (`lidarena.baselines.names`), or ``module:callable`` for a policy of yours, called with the
-            environment and the options. With ``path``, any name you like for the trained agent.
+            environment and the options; ``pretrained:NAME`` for a shipped agent. With ``path``, any name you like for
+            the trained agent.
         path: Run folder of a trained agent, or ``pretrained:NAME``, as `lidarena.agents.load` reads it.
-        options: Keyword arguments of the baseline.
+        options: Keyword arguments of the baseline, or of what drives by the agent's network.
+        sweep: Values of options to try one after the other, ``{preference: [0, 0.5, 1]}``: each makes a policy of its
+            own, called such as ``combined @ 0.5``. In the plane they are the points of one line.
         keywords: Of the environment, for this policy alone, over those of the environment's entry: an agent that was
             trained on another ``observation`` or ``reward`` needs the same here.
         label: What tables and pictures call it; ``name`` if left out.
+        line: Policies of the same line are joined in the plane; those of a sweep are, if it is left out.
     """
 
     name: str = Field(min_length=1)
     path: str | None = None
     options: dict[str, Any] = Field(default_factory=dict)
+    sweep: dict[str, list[Any]] = Field(default_factory=dict)
     keywords: dict[str, Any] = Field(default_factory=dict)
     label: str | None = None
+    line: str | None = None
+
+    @model_validator(mode="before")
+    @classmethod
+    def _shipped_agents_by_name(cls, value: Any) -> Any:
+        name = value.get("name") if isinstance(value, dict) else None
+        if isinstance(name, str) and name.startswith(SHIPPED) and value.get("path") is None and name != SHIPPED:
+            return value | {"name": name.removeprefix(SHIPPED), "path": name}
+        return value
 
     @model_validator(mode="after")
-    def _options_are_for_baselines(self) -> Self:
-        if self.path is not None and self.options:
-            raise ValueError(f"policy {self.name!r} has a path and options, but a trained agent takes no options")
+    def _sweeps_have_values(self) -> Self:
+        for key, values in self.sweep.items():
+            if key in self.options:
+                raise ValueError(f"policy {self.name!r} gives {key!r} in its options and in its sweep; leave one out")
+            if not values or any(value in values[:place] for place, value in enumerate(values)):
+                raise ValueError(f"the sweep of {key!r} of policy {self.name!r} needs values, each of them once")
         for key in EVALUATION_KEYWORDS:
             if key in self.keywords:
                 raise ValueError(f"the keyword {key!r} of policy {self.name!r} is set by the evaluation itself")
@@ -87,6 +107,21 @@ class PolicyEntry(ConfigModel):
     def title(self) -> str:
         """What tables and pictures call it."""
         return self.label or self.name
+
+    def swept(self) -> list["PolicyEntry"]:
+        """The policies that the sweep makes of it, one of each combination of values; itself without a sweep."""
+        if not self.sweep:
+            return [self]
+        return [self._at(dict(zip(self.sweep, values, strict=True))) for values in product(*self.sweep.values())]
+
+    def _at(self, values: dict[str, Any]) -> "PolicyEntry":
+        update = {
+            "options": self.options | values,
+            "sweep": {key: [value] for key, value in values.items()},
+            "label": f"{self.title} @ {', '.join(map(str, values.values()))}",
+            "line": self.line or self.title,
+        }
+        return self.model_copy(update=update)
 
 
 class ComparisonConfig(ConfigModel):
@@ -116,8 +151,13 @@ class ComparisonConfig(ConfigModel):
     @model_validator(mode="after")
     def _labels_tell_entries_apart(self) -> Self:
         _refuse_twins([env.label for env in self.envs], "environments", "name")
-        _refuse_twins([policy.title for policy in self.policies], "policies", "label")
+        _refuse_twins([policy.title for policy in self.participants], "policies", "label")
         return self
+
+    @property
+    def participants(self) -> list[PolicyEntry]:
+        """The policies, those of sweeps one by one."""
+        return [one for policy in self.policies for one in policy.swept()]
 
     @property
     def folder(self) -> Path:

@@ -48,7 +48,7 @@ def make_participants(env_entry: EnvEntry, entry: PolicyEntry, render_mode: str 
     try:
         if agent is None:
             return env, _make_untrained(entry, env)
-        return env, agents.ready(agent, env, f"policy {entry.title!r}")
+        return env, agents.ready(agent, env, f"policy {entry.title!r}", entry.options)
     except BaseException:
         env.close()
         raise
@@ -106,7 +106,7 @@ def check(config: ComparisonConfig) -> None:
     """
     for env in config.envs:
         check_env_id(env.id)
-    for policy in config.policies:
+    for policy in config.participants:
         check_policy(policy)
 
 

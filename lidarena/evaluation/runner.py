@@ -82,7 +82,7 @@ def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
     """
     tasks = []
     for env in config.envs:
-        for policy in config.policies:
+        for policy in config.participants:
             for seed in config.seeds(env):
                 first = seed == config.seed
                 video = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
@@ -105,7 +105,7 @@ def dry_run(config: ComparisonConfig) -> None:
         LidarenaError: A keyword, map, option or agent is refused.
         EpisodeError: Something else went wrong.
     """
-    pairs = [(env, policy) for env in config.envs for policy in config.policies]
+    pairs = [(env, policy) for env in config.envs for policy in config.participants]
     tasks = [Task(env, policy, config.seed, config.pictures, max_steps=DRY_RUN_STEPS) for env, policy in pairs]
     with announced_compilation():
         episodes = run_tasks(tasks, workers=1)

@@ -10,7 +10,7 @@ from lidarena import agents
 from lidarena.agents.corridor.shared_fleet_agent import SharedFleetAgent
 from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
 from lidarena.agents.learned_policy import LearnedPolicy
-from lidarena.base.errors import PolicyFileError
+from lidarena.base.errors import ConfigError, PolicyFileError
 from lidarena.envs import corridor_v0
 from tests.agents.training_cases import small
 
@@ -42,6 +42,27 @@ def test_a_ready_policy_acts_whatever_its_kind(name: str, make: Any, kind: type[
     for _ in range(3):
         observation, *_, info = env.step(policy.act(observation, info))
     env.close()
+
+
+class Told:
+    """Drives by a network, and is told something."""
+
+    def __init__(self, env: Any, learned: LearnedPolicy, *, preference: float = 0.5) -> None:
+        self.preference = preference
+
+
+def test_options_go_to_what_drives_by_the_network(monkeypatch: pytest.MonkeyPatch) -> None:
+    env = gym.make("lidarena/Env2-v0")
+    monkeypatch.setattr("lidarena.agents.loading.import_named", lambda *_: Told)
+    told = agents.load("pretrained:combined", env, options={"preference": 0.25})
+    assert isinstance(told, Told) and told.preference == 0.25
+    with pytest.raises(ConfigError, match="no option 'preferense'; did you mean 'preference'"):
+        agents.load("pretrained:combined", env, options={"preferense": 1})
+
+
+def test_a_network_that_drives_itself_has_no_options() -> None:
+    with pytest.raises(ConfigError, match="'pretrained:arena': the agent has no option 'a'; it has no options"):
+        agents.load("pretrained:arena", gym.make("lidarena/Arena-v0", **ARENA), options={"a": 1})
 
 
 def test_wrappers_are_looked_through() -> None:

@@ -31,6 +31,20 @@ def test_an_environment_may_have_its_own_number_of_episodes() -> None:
     assert [list(config.seeds(env)) for env in config.envs] == [[7, 8, 9, 10], [7, 8]]
 
 
+def test_a_sweep_makes_a_policy_of_each_value() -> None:
+    agent = {"name": "pretrained:combined", "sweep": {"preference": [0, 0.5]}, "keywords": {"patience": 9}}
+    rule = {"name": "nearest_frontier", "label": "nearest", "options": {"c": 3}, "sweep": {"a": [1, 2], "b": [5, 6]}}
+    config = check_config({**MINIMAL, "policies": ["frontier", agent, rule]}, ComparisonConfig)
+    titles = [policy.title for policy in config.participants]
+    combined = ["combined @ 0", "combined @ 0.5"]
+    assert titles == ["frontier", *combined, *(f"nearest @ {a}, {b}" for a in (1, 2) for b in (5, 6))]
+    assert [policy.options for policy in config.participants[1:3]] == [{"preference": 0}, {"preference": 0.5}]
+    assert {policy.path for policy in config.participants[1:3]} == {"pretrained:combined"}
+    assert {policy.line for policy in config.participants[1:3]} == {"combined"} and config.participants[0].line is None
+    assert config.participants[-1].options == {"a": 2, "b": 6, "c": 3}
+    assert all(policy.keywords == {"patience": 9} for policy in config.participants[1:3])
+
+
 def test_a_written_config_reads_back_equal(tmp_path: Path) -> None:
     config = check_config({**MINIMAL, "out": "results/mine", "videos": "mp4"}, ComparisonConfig)
     assert load_config(dump_config(config, tmp_path / "c.yaml"), ComparisonConfig) == config
@@ -70,7 +84,14 @@ def test_the_shipped_files_are_right(name: str) -> None:
         ({"envs": [{"id": "lidarena/Env1-v0", "keyword": {}}]}, "did you mean 'keywords'"),
         ({"envs": [{"id": "e", "keywords": {"expose_truth": True}}]}, "'expose_truth' of 'e' is set by the evaluation"),
         ({"policies": [{"name": "p", "keywords": {"render_mode": "human"}}]}, "'render_mode' of policy 'p'"),
-        ({"policies": [{"name": "p", "path": "runs/p", "options": {"a": 1}}]}, "a trained agent takes no options"),
+        ({"policies": [{"name": "p", "sweep": {"a": []}}]}, "the sweep of 'a' of policy 'p' needs values, each"),
+        ({"policies": [{"name": "p", "sweep": {"a": [1, 1]}}]}, "the sweep of 'a' of policy 'p' needs values, each"),
+        ({"policies": [{"name": "p", "sweep": {"a": 1}}]}, "'policies.0.sweep.a' is 1"),
+        (
+            {"policies": [{"name": "p", "options": {"a": 1}, "sweep": {"a": [2]}}]},
+            "'a' in its options and in",
+        ),
+        ({"policies": ["p @ 1", {"name": "p", "sweep": {"a": [1]}}]}, "two policies are called 'p @ 1'"),
         ({"policies": [{"path": "runs/p"}]}, "'policies.0.name' is missing"),
         ({"envs": [3]}, "'envs.0' is 3"),
     ],

@@ -23,6 +23,9 @@ class Measure:
             shortest path for nothing, so only those policies are compared whose mean of that measure cannot be told
             from the best one.
         main: In the short tables too, not only in `results.json`, `table.csv` and `table.md`.
+        plane: Axis of the plane on which policies are drawn as points, where a family has two measures that are traded
+            for each other; both are better low and positive.
+        hint: What it says, in a few words for somebody new to it; on the plane's axis.
     """
 
     name: str
@@ -34,6 +37,8 @@ class Measure:
     share: bool = False
     needs: str | None = None
     main: bool = False
+    plane: Literal["across", "up"] | None = None
+    hint: str = ""
 
     @property
     def label(self) -> str:
