@@ -30,10 +30,11 @@ def choices_of(actions: Any, count: int, known: int, names: Sequence[str] = ()) 
         whole = values.shape == (count,) and values.dtype.kind == "f" and np.array_equal(values, values.round())
         hint = "; convert it to an integer" if whole else ""
         raise ActionError(f"action {_shown(actions, count)} is not one of the whole numbers 0 to {known - 1}{hint}")
-    if ((values < 0) | (values >= known)).any():
+    numbers = values.astype(np.int64, copy=False)
+    if numbers.view(np.uint64).max() >= known:  # as which negative ones are large
         words = ", ".join(f"{number} ({name})" for number, name in enumerate(names[:known])) or f"0 to {known - 1}"
         raise ActionError(f"action {_shown(actions, count)} is out of range; {words} are allowed")
-    return values.astype(np.int64)
+    return numbers
 
 
 def shares_of(actions: Any, count: int, parts: Sequence[str]) -> NDArray[np.float64]:

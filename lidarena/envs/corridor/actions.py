@@ -1,5 +1,6 @@
 """The actions of a team's robots and the commands they stand for."""
 
+from functools import lru_cache
 from typing import Any
 
 import gymnasium as gym
@@ -15,10 +16,12 @@ SHARES = np.array([(0.0, 0.0), (1.0, 0.0), (0.8, 0.5), (0.8, -0.5), (0.0, 0.75),
 """The discrete actions' speed and turn rate over the fastest ones, in the order of ``NAMES``."""
 
 
+@lru_cache(maxsize=64)
 def discrete_commands(robot: RobotSpec = ROBOT) -> NDArray[np.float64]:
     """Speed [m/s] and turn rate [rad/s] of a robot's discrete actions, (7, 2); (6, 2) if it cannot drive back."""
     shares = SHARES if robot.reverse else SHARES[:-1]
     commands: NDArray[np.float64] = shares * (robot.max_speed, robot.max_turn_rate)
+    commands.flags.writeable = False
     return commands
 
 
@@ -37,8 +40,7 @@ def commands_of(kind: str, actions: Any, count: int, robot: RobotSpec = ROBOT) -
     """
     if kind == "discrete":
         known = discrete_commands(robot)
-        chosen: NDArray[np.float64] = known[choices_of(actions, count, len(known), NAMES)]
-        return chosen
+        return known.take(choices_of(actions, count, len(known), NAMES), axis=0)
     numbers = shares_of(actions, count, ("speed", "turn rate"))
     if not robot.reverse:
         numbers[:, 0] = 0.5 * (numbers[:, 0] + 1.0)

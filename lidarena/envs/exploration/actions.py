@@ -1,5 +1,6 @@
 """The exploration robot's actions and the commands they stand for."""
 
+from functools import lru_cache
 from typing import Any
 
 import gymnasium as gym
@@ -15,9 +16,11 @@ SHARES = np.array([(1.0, 0.0), (0.1, 0.3), (0.1, -0.3)])
 """DA-SLAM's forward, left and right, over the fastest speed and turn rate: 0.5 m/s; 0.05 m/s and 0.3 rad/s."""
 
 
+@lru_cache(maxsize=64)
 def discrete_commands(robot: RobotSpec) -> NDArray[np.float64]:
-    """Speeds [m/s] and turn rates [rad/s] (3, 2) of a robot's discrete actions: DA-SLAM's, to its limits."""
+    """Speeds [m/s] and turn rates [rad/s] (3, 2) of a robot's discrete actions: DA-SLAM's, to its limits; read-only."""
     commands: NDArray[np.float64] = SHARES * (robot.max_speed, robot.max_turn_rate)
+    commands.flags.writeable = False
     return commands
 
 
@@ -35,8 +38,7 @@ def commands_of(kind: str, actions: Any, worlds: int, robot: RobotSpec = ROBOT) 
         ActionError: An action that is NaN, out of range, or of the wrong shape or type.
     """
     if kind == "discrete":
-        commands: NDArray[np.float64] = discrete_commands(robot)[choices_of(actions, worlds, len(SHARES), NAMES)]
-        return commands
+        return discrete_commands(robot).take(choices_of(actions, worlds, len(SHARES), NAMES), axis=0)
     numbers = shares_of(actions, worlds, ("speed", "turn rate"))
     speeds = robot.max_speed * numbers[:, 0] if robot.reverse else 0.5 * robot.max_speed * (numbers[:, 0] + 1.0)
     return np.stack([speeds, robot.max_turn_rate * numbers[:, 1]], axis=1)
