@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lidarena.envs.rewards import Floats, RewardTerms
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from lidarena.envs.arena.state import ArenaCore
 
@@ -43,12 +43,12 @@ def weigh_terms(
         before: (worlds,) distances to the goal before the step [m].
         success: (worlds,) whether the goal is reached.
     """
-    values = {
-        "progress": (before - core.measurements.distance) / core.step_length,
-        "success": success.astype(np.float64),
-        "collision": -core.physics.touched.astype(np.float64),
-        "time": np.full(core.worlds, -1.0),
-        "clearance": np.clip(core.measurements.gap / core.approach, 0.0, 1.0) - 1.0,
-        "turn": -np.abs(core.turns - 2.0 * np.pi * np.rint(core.turns / (2.0 * np.pi))) / np.pi,
+    values: dict[str, Callable[[], Floats]] = {
+        "progress": lambda: (before - core.measurements.distance) / core.step_length,
+        "success": lambda: success.astype(np.float64),
+        "collision": lambda: -core.physics.touched.astype(np.float64),
+        "time": lambda: -np.ones(core.worlds),
+        "clearance": lambda: (core.measurements.gap / core.approach).clip(0.0, 1.0) - 1.0,
+        "turn": lambda: -np.abs(core.turns - 2.0 * np.pi * np.rint(core.turns / (2.0 * np.pi))) / np.pi,
     }
-    return {term: weight * values[term] for term, weight in weights.items()}
+    return {term: weight * values[term]() if weight else np.zeros(core.worlds) for term, weight in weights.items()}

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lidarena.envs.rewards import Floats, RewardTerms
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from lidarena.envs.corridor.state import CorridorCore
 
@@ -49,12 +49,14 @@ def weigh_terms(
         arriving: Whether it arrives.
     """
     measurements, period = core.measurements, core.options.decision_period
-    raw: dict[str, NDArray[Any]] = {
-        "progress": before - measurements.remaining,
-        "arrival": arriving,
-        "collision": -1.0 * touching,
-        "time": -period * active,
-        "closeness": -period * measurements.closeness,
-        "turning": -period * np.abs(measurements.velocity[..., 1]),
+    raw: dict[str, Callable[[], NDArray[Any]]] = {
+        "progress": lambda: before - measurements.remaining,
+        "arrival": lambda: arriving,
+        "collision": lambda: -1.0 * touching,
+        "time": lambda: -period * active,
+        "closeness": lambda: -period * measurements.closeness,
+        "turning": lambda: -period * np.abs(measurements.velocity[..., 1]),
     }
-    return {name: weight * (raw[name] * active) for name, weight in weights.items()}
+    return {
+        name: weight * (raw[name]() * active) if weight else np.zeros(active.shape) for name, weight in weights.items()
+    }

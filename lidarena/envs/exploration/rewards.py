@@ -92,8 +92,10 @@ class ExplorationTerms:
         self._gain = gain
         terms = {name: self._weighing[name](weight) for name, weight in self._chosen.weights.items()}
         if self._chosen.preset in _CRASH_REPLACES:
-            alive = ~self._core.sensors.collision
-            terms = {n: term if n == "collision" else np.where(alive, term, 0.0) for n, term in terms.items()}
+            crashed = self._core.sensors.collision
+            for name, term in terms.items():
+                if name != "collision":
+                    term[crashed] = 0.0
         return terms
 
     def _completeness(self, weight: float) -> Floats:
@@ -119,7 +121,9 @@ class ExplorationTerms:
         return made
 
     def _collision(self, weight: float) -> Floats:
-        return np.where(self._core.sensors.collision, -weight, 0.0)
+        made = np.zeros(self._core.worlds)
+        made[self._core.sensors.collision] = -weight
+        return made
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """What later rewards depend on, by name; a view, to be written to when a state is loaded."""
