@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.base.generator_state import generator_from_words, generator_words
-from lidarena.envs.episodes import Episodes
+from lidarena.envs.episodes import Episodes, Outcome
 from lidarena.envs.infos import Info, masked, overwrite, row_of
 from lidarena.envs.seeds import Seeds, seeds_of
 
@@ -127,19 +127,11 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
         """
         if not self._generators:
             raise ResetNeeded("step() needs running episodes; call reset() first")
-        over = self._ended.copy()
-        if self.autoreset_mode == AutoresetMode.DISABLED and over.any():
-            raise ResetNeeded(
-                f"the episode of environment {int(np.argmax(over))} has ended; "
-                "call reset(options={'reset_mask': mask}) for it before the next step()"
-            )
-        rewards, terminated, truncated = self.episodes.step(_without(actions, over) if over.any() else actions)
-        if over.any():  # what these worlds did is forgotten: their next episode begins here
-            self._begin(self._worlds_of(over), None)
-            rewards[over], terminated[over], truncated[over] = 0.0, False, False
+        same_step = self.autoreset_mode == AutoresetMode.SAME_STEP
+        rewards, terminated, truncated = self.episodes.step(actions) if same_step else self._step_running(actions)
         self._ended = terminated | truncated
         observations, endings = self.episodes.observe(), Info()
-        if self.autoreset_mode == AutoresetMode.SAME_STEP and self._ended.any():
+        if same_step and self._ended.any():
             done = self._ended.copy()
             endings = self._endings(observations, done)
             self._begin(self._worlds_of(done), None)
@@ -147,6 +139,22 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
         infos = masked(self.episodes.infos(), np.ones(self.num_envs, np.bool_))
         infos.update(endings)
         return observations, rewards, terminated, truncated, infos
+
+    def _step_running(self, actions: Any) -> Outcome:
+        """Act where an episode is running, and begin the next one where the last step ended it."""
+        over = self._ended.copy()
+        if not over.any():
+            outcome: Outcome = self.episodes.step(actions)
+            return outcome
+        if self.autoreset_mode == AutoresetMode.DISABLED:
+            raise ResetNeeded(
+                f"the episode of environment {int(np.argmax(over))} has ended; "
+                "call reset(options={'reset_mask': mask}) for it before the next step()"
+            )
+        rewards, terminated, truncated = self.episodes.step(_without(actions, over))
+        self._begin(self._worlds_of(over), None)  # what these worlds did is forgotten
+        rewards[over], terminated[over], truncated[over] = 0.0, False, False
+        return rewards, terminated, truncated
 
     def _worlds_of(self, environments: NDArray[np.bool_]) -> list[int]:
         found: list[int] = np.flatnonzero(environments.reshape(self._worlds, -1).any(axis=1)).tolist()
