@@ -80,9 +80,9 @@ def of_world(info: dict[str, Any], world: int, copy: bool = False) -> Info:
     for name, value in info.items():
         if isinstance(value, dict):
             single[name] = of_world(value, world, copy)
-        else:
-            item = value[world]
-            single[name] = item.item() if item.ndim == 0 else item.copy() if copy else item
+            continue
+        item = value.item(world) if value.ndim == 1 else value[world]  # a Python number, or the object that is there
+        single[name] = item.copy() if copy and isinstance(item, np.ndarray) else item
     return single
 
 
@@ -91,7 +91,7 @@ def masked(info: dict[str, Any], mask: NDArray[np.bool_]) -> Info:
     out = Info()
     for name, value in info.items():
         out[name] = masked(value, mask) if isinstance(value, dict) else value
-        out[f"_{name}"] = mask
+        out["_" + name] = mask
     return out
 
 

@@ -14,7 +14,7 @@ from lidarena.envs.corridor.kernels import write_observations
 from lidarena.envs.corridor.options import OBSERVATIONS, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.corridor.rewards import REWARDS, weigh_terms
-from lidarena.envs.corridor.state import CorridorCore
+from lidarena.envs.corridor.state import CorridorCore, lengths
 from lidarena.envs.infos import Info, of_world
 from lidarena.envs.observers import OneByOne, choose_observer
 from lidarena.envs.path_recorder import PathRecorder
@@ -63,11 +63,24 @@ class CorridorEpisodes:
         self.finished, self.arrived = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
         self.touches, self.steps = np.zeros(shape, np.int64), np.zeros(worlds, np.int64)
         self._arrival_time = np.full(shape, np.nan)
+        self._top = np.array([options.robot.max_speed, options.robot.max_turn_rate])
         self._rewards = StepRewards(choose_reward(options.reward, REWARDS), shape, self._snapshot)
-        grid = self.core.places.grid
-        self._map = np.where(grid.blocked, 100, 0).astype(np.int8)
-        self._map.flags.writeable = False
+        self._fixed = self._fixed_infos(worlds)
         self._compiled = False
+
+    def _fixed_infos(self, worlds: int) -> dict[str, NDArray[Any]]:
+        """What a world tells that never changes, as read-only arrays over worlds, which every info holds."""
+        grid = self.core.places.grid
+        cells = np.where(grid.blocked, 100, 0).astype(np.int8)
+        fixed = {
+            "map": np.broadcast_to(cells, (worlds, *cells.shape)),
+            "resolution": np.full(worlds, grid.resolution),
+            "origin": np.tile(np.array(grid.origin), (worlds, 1)),
+            "radius": np.full(worlds, self.options.robot.radius),
+        }
+        for array in fixed.values():
+            array.flags.writeable = False
+        return fixed
 
     def reset(self, worlds: Iterable[int], generators: Sequence[np.random.Generator]) -> None:
         """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
@@ -105,8 +118,7 @@ class CorridorEpisodes:
         self.steps += 1
         active = ~self.finished
         touching = active & self.core.touching
-        away = self.core.physics.poses[..., :2] - self.core.goals
-        near = np.sqrt((away**2).sum(axis=-1)) <= self.options.goal_tolerance
+        near = lengths(self.core.physics.poses[..., :2] - self.core.goals) <= self.options.goal_tolerance
         arriving = active & near & ~(touching & self.options.collision_ends)
         self._note(touching, arriving)
         weighed = weigh_terms(self.core, self._rewards.chosen.weights, before, active, touching, arriving)
@@ -121,7 +133,8 @@ class CorridorEpisodes:
         self.finished |= arriving
         if self.options.collision_ends:
             self.finished |= touching
-        self._arrival_time[arriving] = np.repeat(self.time, arriving.sum(axis=1))
+        if arriving.any():
+            self._arrival_time[arriving] = np.repeat(self.time, arriving.sum(axis=1))
         if self.trails is not None:
             self.trails.record(self.core.physics.poses)
 
@@ -147,9 +160,8 @@ class CorridorEpisodes:
             seen: NDArray[np.float32] = self._own.observe(self._snapshot(), hidden)
             return seen.reshape(*self.finished.shape, *self.observation_space.shape)
         out = np.empty((*self.finished.shape, self._numbers), np.float32)
-        top = np.array([self.options.robot.max_speed, self.options.robot.max_turn_rate])
         reach, neighbours = self.core.beam.max_range, self.options.neighbours
-        write_observations(self.core.measurements, self.core.goals, hidden, reach, top, neighbours, out)
+        write_observations(self.core.measurements, self.core.goals, hidden, reach, self._top, neighbours, out)
         return out
 
     def robot_infos(self) -> Info:
@@ -178,29 +190,21 @@ class CorridorEpisodes:
 
     def world_infos(self) -> Info:
         """What every step tells about a world, as arrays over worlds; ``map`` is one read-only array for all."""
-        worlds, grid = len(self.steps), self.core.places.grid
-        info = Info(
-            {
-                "time": self.time,
-                "map": np.broadcast_to(self._map, (worlds, *self._map.shape)),
-                "resolution": np.full(worlds, grid.resolution),
-                "origin": np.tile(np.array(grid.origin), (worlds, 1)),
-                "radius": np.full(worlds, self.options.robot.radius),
-            }
-        )
+        info = Info(time=self.time, **self._fixed)
         if self.options.expose_truth:
             info["truth"] = {"pose": self.core.physics.poses.copy(), "path_length": self.core.travelled.copy()}
         return info
 
     def measures(self) -> dict[str, NDArray[np.float64]]:
         """How the teams have done so far, by name, (worlds,) each; times of robots not there yet go on."""
+        robots = self.options.robots
         times = np.where(np.isnan(self._arrival_time), self.time[:, None], self._arrival_time)
         return {
-            "arrival": self.arrived.mean(axis=1),
+            "arrival": self.arrived.sum(axis=1) / robots,
             "all_arrived": self.arrived.all(axis=1).astype(np.float64),
-            "collided": (self.touches > 0).mean(axis=1),
+            "collided": (self.touches > 0).sum(axis=1) / robots,
             "makespan": times.max(axis=1),
-            "mean_time": times.mean(axis=1),
+            "mean_time": times.sum(axis=1) / robots,
         }
 
     def arrays(self) -> dict[str, NDArray[Any]]:

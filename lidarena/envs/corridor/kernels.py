@@ -1,4 +1,4 @@
-"""Kernels of the multi-robot worlds: the wheels' noise, who is near something, what everybody measurements."""
+"""Kernels of the multi-robot worlds: the wheels' noise, who is near something, what everybody senses."""
 
 import math
 from typing import NamedTuple
@@ -243,7 +243,7 @@ def distance_to_goal(
         x: Of the point.
         y: Of the point.
         ground: Where the cells are.
-        before: What is returned where no way begins nearby, with the goal itself as lookahead_point.
+        before: What is returned where no way begins nearby, with the goal itself as the point ahead.
         lookahead_point: Output.
     """
     lookahead_point[0], lookahead_point[1] = goal[0], goal[1]

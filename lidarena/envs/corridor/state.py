@@ -156,7 +156,7 @@ class CorridorCore:
         )
         find_near(commands, period, self.robot.radius, bool(self.robot.outline), before, self.ground, self._near)
         self.physics.advance(commands, period, self._near)
-        self.travelled += np.sqrt(((self.physics.poses - before)[..., :2] ** 2).sum(axis=-1))
+        self.travelled += lengths((self.physics.poses - before)[..., :2])
         self._perceive(before, 0, self.worlds)
 
     @property
@@ -194,3 +194,9 @@ class CorridorCore:
             array[...] = saved[name]
         for world in range(self.worlds):
             self._look_up_ways(world)
+
+
+def lengths(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lengths (…) of vectors (…, 2)."""
+    made: NDArray[np.float64] = np.sqrt(vectors[..., 0] ** 2 + vectors[..., 1] ** 2)
+    return made

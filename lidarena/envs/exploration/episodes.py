@@ -56,6 +56,8 @@ class ExplorationEpisodes:
         self._rewards = StepRewards(chosen, (worlds,), self._snapshot)
         self._resolution, self._radius = np.full(worlds, RESOLUTION), np.full(worlds, self.core.robot.radius)
         self._resolution.flags.writeable = self._radius.flags.writeable = False  # every info holds the same ones
+        self._map = self.core.maps.occupancy[:]
+        self._map.flags.writeable = False
         self._compiled = False
 
     def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
@@ -136,8 +138,6 @@ class ExplorationEpisodes:
     def _facts(self) -> Info:
         """All but what the step was worth."""
         core = self.core
-        view = core.maps.occupancy[:]
-        view.flags.writeable = False
         info = Info(
             {
                 "completeness": self._completeness.copy(),
@@ -151,7 +151,7 @@ class ExplorationEpisodes:
                 "success": self._explored() & ~core.sensors.collision,
                 "scan": core.sensors.scans[:, 0].copy(),
                 "odometry_pose": core.sensors.dead_reckoning[:, 0].copy(),
-                "map": view,
+                "map": self._map,
                 "resolution": self._resolution,
                 "origin": core.maps.origin.copy(),
                 "radius": self._radius,
