@@ -17,6 +17,9 @@ from lidarena.evaluation.tables import short_note, terminal_table
 from lidarena.evaluation.team_planning.team_experiment import TeamExperimentConfig, is_team_experiment
 from lidarena.evaluation.team_planning.team_tables import compare_planners, print_rows
 
+_FAILURES = 10
+"""So many maps that could not be used are named in the terminal."""
+
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a comparison; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
@@ -44,7 +47,18 @@ def main(arguments: list[str] | None = None) -> int:
     out.print(short_note(comparison.rows), style="dim", highlight=False)
     for line in _places(comparison):
         out.print(line, highlight=False, markup=False, soft_wrap=True)
-    return 0
+    return _tell_failures(comparison.failures)
+
+
+def _tell_failures(failures: list[str]) -> int:
+    """Say which maps could not be used; return 1 if there are any."""
+    for sentence in failures[:_FAILURES]:
+        print(sentence, file=sys.stderr)
+    if len(failures) > _FAILURES:
+        print(f"and {len(failures) - _FAILURES} more maps, see results.json", file=sys.stderr)
+    if failures:
+        print("all other maps were driven in, and are in the results", file=sys.stderr)
+    return 1 if failures else 0
 
 
 def _places(comparison: Comparison) -> list[str]:

@@ -1,5 +1,6 @@
 """A whole comparison: from its file to the folder with tables, pictures and videos."""
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -42,6 +43,20 @@ class Comparison:
     videos: list[Path]
     earlier: Path | None
 
+    @property
+    def failures(self) -> list[str]:
+        """A sentence for each map of a folder that could not be used."""
+        found: dict[tuple[str, str, str], list[str]] = {}
+        for row in self.rows:
+            for name, sentence in row.failures.items():
+                found.setdefault((row.env, name, sentence), []).append(row.policy)
+        policies = Counter(row.env for row in self.rows)
+        told = []
+        for (env, name, sentence), who in found.items():
+            whose = "" if len(who) == policies[env] else f", policies {', '.join(who)}"
+            told.append(f"environment {env!r}, map {name!r}{whose}: {sentence}")
+        return told
+
 
 def compare(config: ComparisonConfig, console: Console | None = None) -> Comparison:
     """Run every policy in every environment on the same seeds, and write what came of it.
@@ -63,7 +78,7 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
     console = console or Console(quiet=True)
     check_folder(config.folder)
     check(config)
-    count = len(config.envs) * len(config.participants)
+    count = len(config.worlds) * len(config.participants)
     console.print(f"trying {count} pairs of environment and policy", highlight=False)
     dry_run(config)
     found: list[list[Cell]] = []
@@ -107,7 +122,11 @@ def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[
     tasks = list_tasks(config, videos)
     with report_progress(len(tasks), console) as advance:
         episodes = iter(run_tasks(tasks, config.workers, lambda task: advance(str(task))))
+    counts = Counter((task.env.label, task.policy.title) for task in tasks)
     return [
-        [Cell(env, policy, [next(episodes) for _ in config.seeds(env)]) for policy in config.participants]
-        for env in config.envs
+        [
+            Cell(env, policy, [next(episodes) for _ in range(counts[env.label, policy.title])])
+            for policy in config.participants
+        ]
+        for env in config.worlds
     ]

@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import BeforeValidator, Field, model_validator
 
 from lidarena.base.yaml_config import ConfigModel
+from lidarena.evaluation.map_folders import MapCase, MapFolder
 
 EVALUATION_KEYWORDS = ("expose_truth", "render_mode")
 """Keywords of the environments that the evaluation itself sets."""
@@ -33,13 +34,24 @@ class EnvEntry(ConfigModel):
         name: What tables and pictures call it; the id without its namespace if left out.
         keywords: Handed to `gymnasium.make`, such as ``map`` or ``max_episode_steps``. ``{seed}`` in a text stands for
             the seed of the episode: with ``map: "maze:{seed}"`` every episode has a maze of its own.
-        episodes: Here; those of the comparison if left out.
+        maps: A folder of maps (its path, or a section with ``path`` and ``starts``) in place of a ``map``: one episode
+            a map, reported together as one kind of world. A map that is broken costs nothing but itself.
+        episodes: Here; those of the comparison if left out. Of a folder so many maps, spread over the names; all of
+            them if left out.
     """
 
     id: str = Field(min_length=1)
     name: str | None = None
     keywords: dict[str, Any] = Field(default_factory=dict)
+    maps: Annotated[MapFolder, _named("path")] | None = None
     episodes: int | None = Field(default=None, ge=1, le=100_000)
+
+    @model_validator(mode="after")
+    def _the_folder_says_the_map(self) -> Self:
+        for key in ("map", *(["start"] if self.maps is not None and self.maps.starts is not None else [])):
+            if self.maps is not None and key in self.keywords:
+                raise ValueError(f"{self.id!r} has a folder of maps and the keyword {key!r}; leave one out")
+        return self
 
     @model_validator(mode="after")
     def _leave_the_evaluation_its_own(self) -> Self:
@@ -48,9 +60,10 @@ class EnvEntry(ConfigModel):
                 raise ValueError(f"the keyword {key!r} of {self.id!r} is set by the evaluation itself, so leave it out")
         return self
 
-    def of_episode(self, seed: int) -> "EnvEntry":
-        """The entry with the seed of an episode filled in."""
-        return self.model_copy(update={"keywords": {key: _fill(value, seed) for key, value in self.keywords.items()}})
+    def of_episode(self, seed: int, case: MapCase | None = None) -> "EnvEntry":
+        """The entry with the seed of an episode filled in, and the map where there is a folder of them."""
+        keywords = {key: _fill(value, seed) for key, value in self.keywords.items()}
+        return self.model_copy(update={"keywords": keywords | (case.keywords if case is not None else {})})
 
     @property
     def label(self) -> str:
@@ -131,6 +144,7 @@ class ComparisonConfig(ConfigModel):
         envs: The environments; a plain id stands for an entry without keywords.
         policies: The policies; a plain name stands for a baseline without options. The first is the one that the
             others are compared with pair by pair.
+        keywords: Of every environment, under those of its own entry.
         episodes: Per environment and policy, where the environment's entry does not say otherwise.
         seed: Episode k of every policy runs on seed + k, so that policies meet the same worlds.
         pictures: Draw the first episode of each, an overview and the progress over time (PNG).
@@ -141,6 +155,7 @@ class ComparisonConfig(ConfigModel):
 
     envs: list[Annotated[EnvEntry, _named("id")]] = Field(min_length=1)
     policies: list[Annotated[PolicyEntry, _named("name")]] = Field(min_length=1)
+    keywords: dict[str, Any] = Field(default_factory=dict)
     episodes: int = Field(default=20, ge=1, le=100_000)
     seed: int = Field(default=0, ge=0, lt=2**31)
     pictures: bool = True
@@ -154,6 +169,18 @@ class ComparisonConfig(ConfigModel):
         _refuse_twins([policy.title for policy in self.participants], "policies", "label")
         return self
 
+    @model_validator(mode="after")
+    def _leave_the_evaluation_its_own(self) -> Self:
+        for key in EVALUATION_KEYWORDS:
+            if key in self.keywords:
+                raise ValueError(f"the keyword {key!r} is set by the evaluation itself, so leave it out")
+        return self
+
+    @property
+    def worlds(self) -> list[EnvEntry]:
+        """The environments, with the keywords that are said of all."""
+        return [env.model_copy(update={"keywords": self.keywords | env.keywords}) for env in self.envs]
+
     @property
     def participants(self) -> list[PolicyEntry]:
         """The policies, those of sweeps one by one."""
@@ -166,7 +193,15 @@ class ComparisonConfig(ConfigModel):
 
     def seeds(self, env: EnvEntry) -> range:
         """Seeds of the episodes in an environment, the same for every policy."""
-        return range(self.seed, self.seed + (env.episodes or self.episodes))
+        return range(self.seed, self.seed + len(self.cases(env)))
+
+    def cases(self, env: EnvEntry) -> list[MapCase | None]:
+        """The map of each episode in an environment; None where its keywords say which.
+
+        Raises:
+            ConfigError: A folder of maps that cannot be used.
+        """
+        return [None] * (env.episodes or self.episodes) if env.maps is None else [*env.maps.cases(env.episodes)]
 
 
 def file_name(label: str) -> str:

@@ -31,6 +31,8 @@ class Episode:
         caption: What was done and why it ended, in half a line.
         progress: How a measure rose or fell over time, if the family tells one.
         picture: To be drawn, if it was asked for and the family draws any.
+        map: Of a folder of maps, which one.
+        error: Why there is nothing, where a map of a folder could not be used; a sentence.
     """
 
     seed: int
@@ -40,6 +42,8 @@ class Episode:
     caption: str = ""
     progress: ProgressCurve | None = None
     picture: Picture | None = None
+    map: str | None = None
+    error: str | None = None
 
 
 def policy_seed(seed: int) -> int:

@@ -102,10 +102,11 @@ def check(config: ComparisonConfig) -> None:
     """Refuse what can be seen to be wrong before anything is made.
 
     Raises:
-        ConfigError: An environment, baseline, module or folder does not exist.
+        ConfigError: An environment, baseline, module or folder does not exist, or a folder of maps cannot be used.
     """
-    for env in config.envs:
+    for env in config.worlds:
         check_env_id(env.id)
+        config.cases(env)
     for policy in config.participants:
         check_policy(policy)
 

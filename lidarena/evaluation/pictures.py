@@ -40,6 +40,11 @@ class Cell:
         return self.episodes[0].picture
 
     @property
+    def whole(self) -> bool:
+        """Whether all episodes that were driven have a curve."""
+        return len(self.curves) == sum(episode.error is None for episode in self.episodes) > 0
+
+    @property
     def curves(self) -> list[ProgressCurve]:
         """Of the episodes, as far as they have one."""
         return [episode.progress for episode in self.episodes if episode.progress is not None]
@@ -57,7 +62,7 @@ def draw_pictures(cells: Sequence[Sequence[Cell]], folder: Path) -> list[Path]:
         whose family draws nothing.
     """
     drawn = [row for row in cells if all(cell.picture is not None for cell in row)]
-    curves = [row for row in cells if all(len(cell.curves) == len(cell.episodes) for cell in row)]
+    curves = [row for row in cells if all(cell.whole for cell in row)]
     paths = []
     if drawn:
         paths.append(write_figure(folder / "overview.png", overview(drawn)))

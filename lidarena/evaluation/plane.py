@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.evaluation.comparison_config import PolicyEntry
-from lidarena.evaluation.measures.table_columns import Measure
+from lidarena.evaluation.measures.table_columns import Measure, merged
 from lidarena.evaluation.results import Row
 from lidarena.evaluation.statistics import LEAST_SAMPLES
 
@@ -27,6 +27,7 @@ LEVEL = 0.02
 RESAMPLES = 2000
 FRONT_FILE = "front.json"
 _BOUNDS = (2.5, 97.5)
+_SAME = 1e-6
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,8 @@ def plane_of(group: Sequence[Row], policies: Sequence[PolicyEntry]) -> Plane | N
         group: Its rows.
         policies: Their policies.
     """
-    axes = [next((m for m in group[0].columns if m.plane == place), None) for place in ("across", "up")]
+    columns = merged(row.columns for row in group)
+    axes = [next((m for m in columns if m.plane == place), None) for place in ("across", "up")]
     across, up = axes
     if across is None or up is None:
         return None
@@ -125,7 +127,7 @@ def plane_of(group: Sequence[Row], policies: Sequence[PolicyEntry]) -> Plane | N
     values = np.array([[row.metrics[m.name].values for m in (across, up)] for row, _ in known])
     paired = values[:, :, np.isfinite(values).all(axis=(0, 1))]  # (policies, 2, episodes)
     count = paired.shape[2]
-    if not count or not (paired.mean(axis=2) > 0.0).all() or np.ptp(paired[:, 1]) == 0.0:
+    if not count or not (paired.mean(axis=2) > 0.0).all() or np.ptp(paired[:, 1]) < _SAME * paired[:, 1].max():
         return None  # with the true pose nothing is uncertain
     level = _level([row for row, _ in known], across.needs)
     points = tuple(

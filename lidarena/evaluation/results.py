@@ -2,8 +2,8 @@
 
 import json
 import math
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -42,6 +42,8 @@ class Row:
         episodes: Number of them.
         columns: Of the environment's family, in the order of the table.
         metrics: By the columns' names, without those that no episode reported.
+        maps: Of a folder of maps, in the order of the values; none otherwise.
+        failures: Why a map of a folder could not be used, by its name; its values are NaN.
     """
 
     env: str
@@ -49,6 +51,8 @@ class Row:
     episodes: int
     columns: tuple[Measure, ...]
     metrics: dict[str, Metric]
+    maps: tuple[str, ...] = ()
+    failures: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def measured(self) -> list[Measure]:
@@ -68,13 +72,15 @@ def summarise(env: str, policy: str, episodes: Sequence[Episode]) -> Row:
         The row, without the measures that no episode reported.
     """
     metrics = {}
-    columns = episodes[0].columns
+    columns = next((episode.columns for episode in episodes if episode.error is None), ())
     for measure in columns:
         values = tuple(episode.measures.get(measure.name, math.nan) for episode in episodes)
         if not all(math.isnan(value) for value in values):
             interval = share_interval(values) if measure.share else bootstrap(values)
             metrics[measure.name] = Metric(interval, values)
-    return Row(env, policy, len(episodes), columns, metrics)
+    maps = tuple(episode.map for episode in episodes if episode.map is not None)
+    failures = {episode.map: episode.error for episode in episodes if episode.map and episode.error is not None}
+    return Row(env, policy, len(episodes), columns, metrics, maps, failures)
 
 
 def contenders(rows: Sequence[Row], measure: Measure) -> list[Row]:
@@ -122,20 +128,22 @@ def _is_level(difference: Interval) -> bool:
 
 
 def results_document(config: ComparisonConfig, rows: Sequence[Row]) -> dict[str, Any]:
-    """Return what `results.json` holds: ``config``, ``versions`` and ``rows`` (the schema is in DESIGN.md)."""
+    """Return what `results.json` holds: ``config``, ``versions`` and ``rows`` (the schema is in DESIGN.md).
+
+    Rows of a folder of maps have ``maps`` as well, their names in the order of the values, and ``failures``, why some
+    could not be used.
+    """
     return {
         "config": config.model_dump(mode="json"),
         "versions": library_versions(),
-        "rows": [
-            {
-                "env": row.env,
-                "policy": row.policy,
-                "episodes": row.episodes,
-                "metrics": {name: _metric_document(metric) for name, metric in row.metrics.items()},
-            }
-            for row in rows
-        ],
+        "rows": [_row_document(row) for row in rows],
     }
+
+
+def _row_document(row: Row) -> dict[str, Any]:
+    metrics = {name: _metric_document(metric) for name, metric in row.metrics.items()}
+    document = {"env": row.env, "policy": row.policy, "episodes": row.episodes, "metrics": metrics}
+    return document | ({"maps": list(row.maps), "failures": dict(row.failures)} if row.maps else {})
 
 
 def write_results(path: Path, config: ComparisonConfig, rows: Sequence[Row]) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
 from contextlib import AbstractContextManager, contextmanager, nullcontext
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any, NoReturn, TypeVar
@@ -16,13 +16,15 @@ from typing import Any, NoReturn, TypeVar
 import cv2
 import numba
 
-from lidarena.base.errors import LidarenaError
+from lidarena.base.errors import LidarenaError, MapError
 from lidarena.base.worker_processes import worker_pool
+from lidarena.baselines import Policy
 from lidarena.envs.compilation import announced_compilation, keep_quiet
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
+from lidarena.evaluation.map_folders import MapCase
 from lidarena.evaluation.participants import make_participants
-from lidarena.evaluation.picture import Picture
+from lidarena.evaluation.recording import Env
 from lidarena.evaluation.videos import VideoRecorder
 
 DRY_RUN_STEPS = 30
@@ -49,6 +51,7 @@ class Task:
         keep_picture: Keep what pictures need.
         video: File of the video, if one is wanted.
         max_steps: Stop here; None leaves it to the environment.
+        case: The map, of a folder of them.
     """
 
     env: EnvEntry
@@ -57,9 +60,11 @@ class Task:
     keep_picture: bool = False
     video: Path | None = None
     max_steps: int | None = None
+    case: MapCase | None = None
 
     def __str__(self) -> str:
-        return f"environment {self.env.label!r}, policy {self.policy.title!r}, seed {self.seed}"
+        which = f"seed {self.seed}" if self.case is None else f"map {self.case.name!r}"
+        return f"environment {self.env.label!r}, policy {self.policy.title!r}, {which}"
 
 
 @dataclass(frozen=True)
@@ -69,6 +74,7 @@ class _Failure:
     sentence: str
     report: str
     refused: bool
+    of_map: bool = False
 
 
 def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
@@ -81,12 +87,14 @@ def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
         videos: Folder for the videos.
     """
     tasks = []
-    for env in config.envs:
+    for env in config.worlds:
+        cases = config.cases(env)
         for policy in config.participants:
-            for seed in config.seeds(env):
-                first = seed == config.seed
+            for number, case in enumerate(cases):
+                first = number == 0
                 video = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
-                tasks.append(Task(env, policy, seed, config.pictures and first, video))
+                picture = config.pictures and first
+                tasks.append(Task(env, policy, config.seed + number, picture, video, case=case))
     return tasks
 
 
@@ -105,22 +113,39 @@ def dry_run(config: ComparisonConfig) -> None:
         LidarenaError: A keyword, map, option or agent is refused.
         EpisodeError: Something else went wrong.
     """
-    pairs = [(env, policy) for env in config.envs for policy in config.participants]
-    tasks = [Task(env, policy, config.seed, config.pictures, max_steps=DRY_RUN_STEPS) for env, policy in pairs]
-    with announced_compilation():
-        episodes = run_tasks(tasks, workers=1)
-    for task, episode in zip(tasks, episodes, strict=True):
-        if episode.picture is not None:
-            failure = _guarded(partial(_try_picture, episode.picture))
-            if isinstance(failure, _Failure):
-                _raise(task, failure)
+    with announced_compilation(), _single_threaded():
+        for env in config.worlds:
+            cases = config.cases(env)
+            for policy in config.participants:
+                tried = Task(env, policy, config.seed, config.pictures, max_steps=DRY_RUN_STEPS)
+                _try_one([replace(tried, case=case) for case in (cases if env.maps is not None else cases[:1])])
 
 
-def _try_picture(picture: Picture) -> None:
+def _try_one(tasks: Sequence[Task]) -> None:
+    """Run the first task whose map can be used, and draw what came of it; there is at least one.
+
+    Raises:
+        LidarenaError: It is refused, or no map can be used.
+        EpisodeError: It failed.
+    """
+    failures: list[tuple[Task, _Failure]] = []
+    for task in tasks:
+        outcome = _guarded(partial(_try, task))
+        if not isinstance(outcome, _Failure):
+            return
+        failures.append((task, outcome))
+        if not outcome.of_map:
+            break
+    _raise(*(failures[0] if failures[-1][1].of_map else failures[-1]))
+
+
+def _try(task: Task) -> None:
     from matplotlib.figure import Figure
 
-    picture.bounds()
-    picture.draw(Figure().add_subplot())
+    picture = _run(task).picture
+    if picture is not None:
+        picture.bounds()
+        picture.draw(Figure().add_subplot())
 
 
 def run_tasks(
@@ -134,7 +159,7 @@ def run_tasks(
         advance: Called in this process after each episode, in the order in which they end.
 
     Returns:
-        One episode per task, in the tasks' order.
+        One episode per task, in the tasks' order. Where a map of a folder could not be used it holds the ``error``.
 
     Raises:
         LidarenaError: A task was refused.
@@ -146,9 +171,7 @@ def run_tasks(
     episodes: dict[int, Episode] = {}
     with _single_threaded(), pool as outcomes:
         for index, outcome in outcomes:
-            if isinstance(outcome, _Failure):
-                _raise(tasks[index], outcome)
-            episodes[index] = outcome
+            episodes[index] = outcome if isinstance(outcome, Episode) else _without(tasks[index], outcome)
             if advance:
                 advance(tasks[index])
     return [episodes[index] for index in range(len(tasks))]
@@ -198,30 +221,49 @@ def _guarded(work: Callable[[], Outcome]) -> Outcome | _Failure:
     try:
         return work()
     except LidarenaError as refusal:
-        return _Failure(str(refusal), traceback.format_exc(), refused=True)
+        return _Failure(str(refusal), traceback.format_exc(), refused=True, of_map=isinstance(refusal, MapError))
     except Exception as error:
         lines = str(error).strip().splitlines()
         sentence = f"{type(error).__name__}: {lines[0]}" if lines else type(error).__name__
         return _Failure(sentence, traceback.format_exc(), refused=False)
 
 
+def _without(task: Task, failure: _Failure) -> Episode:
+    """What stands for the episode of a map that could not be used; others of the folder can.
+
+    Raises:
+        LidarenaError: The task is not of a folder of maps, and was refused.
+        EpisodeError: It is not, and failed.
+    """
+    if task.case is None:
+        _raise(task, failure)
+    return Episode(task.seed, (), {}, "error", map=task.case.name, error=failure.sentence)
+
+
 def _raise(task: Task, failure: _Failure) -> NoReturn:
     if failure.refused:
-        raise LidarenaError(f"environment {task.env.label!r}, policy {task.policy.title!r}: {failure.sentence}")
+        where = "" if task.case is None else f", map {task.case.name!r}"
+        raise LidarenaError(f"environment {task.env.label!r}, policy {task.policy.title!r}{where}: {failure.sentence}")
     raise EpisodeError(f"{task}: {failure.sentence}", failure.report)
 
 
 def _run(task: Task) -> Episode:
-    env, policy = make_participants(task.env.of_episode(task.seed), task.policy, "rgb_array" if task.video else None)
+    entry = task.env.of_episode(task.seed, task.case)
+    env, policy = make_participants(entry, task.policy, "rgb_array" if task.video else None)
     try:
         _limit_threads(1)
-        how: dict[str, Any] = {"max_steps": task.max_steps, "keep_picture": task.keep_picture}
-        if task.video is None:
-            return run_episode(env, policy, task.seed, **how)
-        with VideoRecorder(task.video) as recorder:
-            return run_episode(env, policy, task.seed, record=recorder.add, **how)
+        episode = _recorded(task, env, policy)
+        return replace(episode, map=task.case.name) if task.case is not None else episode
     finally:
         env.close()
+
+
+def _recorded(task: Task, env: Env, policy: Policy) -> Episode:
+    how: dict[str, Any] = {"max_steps": task.max_steps, "keep_picture": task.keep_picture}
+    if task.video is None:
+        return run_episode(env, policy, task.seed, **how)
+    with VideoRecorder(task.video) as recorder:
+        return run_episode(env, policy, task.seed, record=recorder.add, **how)
 
 
 @contextmanager

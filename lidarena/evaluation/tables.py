@@ -185,7 +185,11 @@ def _listed(names: Sequence[str]) -> str:
 
 
 def _episodes(group: Sequence[Row]) -> str:
-    return f"{group[0].episodes} episode{'s' if group[0].episodes > 1 else ''}"
+    """Such as ``"20 episodes"``, or ``"149 of 150 maps"`` where one could not be used by somebody."""
+    row = group[0]
+    count, what = row.episodes, "map" if row.maps else "episode"
+    used = count - len({name for one in group for name in one.failures})
+    return f"{f'{used} of ' if used < count else ''}{count} {what}{'s' if count > 1 else ''}"
 
 
 def _interval(row: Row, measure: Measure) -> Interval:

@@ -134,9 +134,10 @@ class Floorplan:
         clearance = self.clearance(np.array([[x, y]]))[0] if inside else -np.inf
         if clearance < START_CLEARANCE:
             where = f"{max(clearance, 0.0):.2f} m from the nearest wall" if inside else "outside the map"
+            bounds = ", ".join(f"{side:g}" for side in self.bounds)
             raise MapError(
                 f"start ({x:g}, {y:g}) stands in a wall of map {self.name!r} or {where}; "
-                f"at least {START_CLEARANCE} m of clearance inside {self.bounds} is needed"
+                f"at least {START_CLEARANCE} m of clearance inside ({bounds}) is needed"
             )
         return replace(self, start=(x, y, float(np.arctan2(np.sin(theta), np.cos(theta)))))
 

@@ -45,6 +45,18 @@ def test_a_sweep_makes_a_policy_of_each_value() -> None:
     assert all(policy.keywords == {"patience": 9} for policy in config.participants[1:3])
 
 
+def test_keywords_of_all_environments_stand_under_their_own() -> None:
+    envs = ["lidarena/Env1-v0", {"id": "lidarena/Env2-v0", "keywords": {"slam": "truth"}}]
+    content = {**MINIMAL, "envs": envs, "keywords": {"slam": "rbpf", "stop_at": None}}
+    config = check_config(content, ComparisonConfig, ["keywords.patience=9"])
+    assert [env.keywords for env in config.worlds] == [
+        {"slam": "rbpf", "stop_at": None, "patience": 9},
+        {"slam": "truth", "stop_at": None, "patience": 9},
+    ]
+    with pytest.raises(ConfigError, match="'expose_truth' is set by the evaluation itself"):
+        check_config({**MINIMAL, "keywords": {"expose_truth": True}}, ComparisonConfig)
+
+
 def test_a_written_config_reads_back_equal(tmp_path: Path) -> None:
     config = check_config({**MINIMAL, "out": "results/mine", "videos": "mp4"}, ComparisonConfig)
     assert load_config(dump_config(config, tmp_path / "c.yaml"), ComparisonConfig) == config
@@ -57,7 +69,7 @@ def test_labels_become_file_names(label: str, file: str) -> None:
     assert file_name(label) == file
 
 
-@pytest.mark.parametrize("name", ["quick", "exploration", "da_slam", "unseen"])
+@pytest.mark.parametrize("name", ["quick", "exploration", "da_slam", "unseen", "explorers", "dungeons"])
 def test_the_shipped_files_are_right(name: str) -> None:
     config = load_config(Path(__file__).parents[2] / f"configs/compare/{name}.yaml", ComparisonConfig)
     assert config.folder == Path("results") / name
