@@ -157,12 +157,15 @@ class BatchedWorlds(VectorEnv[Any, Any, Any]):
         return rewards, terminated, truncated
 
     def _worlds_of(self, environments: NDArray[np.bool_]) -> list[int]:
-        found: list[int] = np.flatnonzero(environments.reshape(self._worlds, -1).any(axis=1)).tolist()
+        each = environments
+        if self._worlds != self.num_envs:
+            each = np.logical_or.reduce(environments.reshape(self._worlds, -1), axis=1)
+        found: list[int] = each.nonzero()[0].tolist()
         return found
 
     def _endings(self, observations: Any, done: NDArray[np.bool_]) -> Info:
-        final = np.full(self.num_envs, None, dtype=object)
-        for one in np.flatnonzero(done).tolist():
+        final = np.empty(self.num_envs, object)
+        for one in done.nonzero()[0].tolist():
             final[one] = row_of(observations, one, copy=True)
         last = masked(self.episodes.last_infos(), done)
         return Info({"final_obs": final, "_final_obs": done.copy(), "final_info": last, "_final_info": done.copy()})

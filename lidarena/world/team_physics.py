@@ -52,8 +52,8 @@ class TeamPhysics(Spaces):
                 one must be marked, too; the others are moved along the chords of their arcs without asking pymunk.
         """
         self.touched_wall[:] = self.touched_robot[:] = False
-        for world in np.flatnonzero(near.any(axis=1)).tolist():
-            self._push_some(world, np.flatnonzero(near[world]).tolist(), commands[world], duration)
+        for world in np.logical_or.reduce(near, axis=1).nonzero()[0].tolist():
+            self._push_some(world, near[world].nonzero()[0].tolist(), commands[world], duration)
         glide_apart(near, commands, duration, self.poses)
 
     def _push_some(self, world: int, robots: list[int], commands: NDArray[np.float64], duration: float) -> None:

@@ -173,7 +173,7 @@ class ArenaCore:
         turn_and_sweep(
             turns, self.step_length, margin, self.geometry, self.radii, poses, self.measurements.gap, self._near
         )
-        for world in np.flatnonzero(self._near).tolist():
+        for world in self._near.nonzero()[0].tolist():
             self._meet(world)
         commands = np.zeros((self.worlds, 1, 2))
         commands[:, 0, 0] = self.robot.max_speed

@@ -1,6 +1,5 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
-import math
 from collections.abc import Callable, Iterable
 from contextlib import nullcontext
 from typing import Any
@@ -98,16 +97,18 @@ class ExplorationEpisodes:
 
     def _explored(self) -> NDArray[np.bool_]:
         """In which worlds completeness has reached ``stop_at``."""
-        return self._completeness >= (math.inf if self.options.stop_at is None else self.options.stop_at)
+        if self.options.stop_at is None:
+            return np.zeros(self.worlds, np.bool_)
+        return self._completeness >= self.options.stop_at
 
     def _truncated(self) -> NDArray[np.bool_]:
         """Which worlds have run out of steps, or of patience."""
-        gain = self._completeness >= self._gained + _GAIN
-        self._gained[gain], self._gained_at[gain] = self._completeness[gain], self._steps[gain]
         truncated = np.zeros(self.core.worlds, np.bool_)
         if self.options.max_episode_steps != -1:
             truncated |= self._steps >= self.options.max_episode_steps
         if self.options.patience is not None:
+            gain = self._completeness >= self._gained + _GAIN
+            self._gained[gain], self._gained_at[gain] = self._completeness[gain], self._steps[gain]
             truncated |= (self._steps - self._gained_at) * self.options.decision_period >= self.options.patience
         return truncated
 
