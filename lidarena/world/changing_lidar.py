@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.lidar import Lidar, LidarSpec, MapGeometry, lay_out
+from lidarena.world.lidar import Lidar, LidarSpec
+from lidarena.world.map_geometry import MapGeometry, lay_out
 
 _Room = tuple[int, int, int, int]
 

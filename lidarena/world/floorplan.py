@@ -1,5 +1,6 @@
 """Floor plans: the solid parts of a world as oriented edges and circles."""
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import Self
@@ -8,6 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import MapError
+from lidarena.base.jit import leaf
 from lidarena.world.raster import Raster, rasterize
 
 Pose = tuple[float, float, float]
@@ -147,18 +149,8 @@ class Floorplan:
         Args:
             points: ``(n, 2)``.
         """
-        away = np.full(len(points), np.inf)
-        winding = np.zeros(len(points), dtype=np.int64)
-        for x1, y1, x2, y2 in self.edges:
-            away = np.minimum(away, _segment_distance(points, x1, y1, x2, y2))
-            up = (y1 <= points[:, 1]) & (points[:, 1] < y2)
-            down = (y2 <= points[:, 1]) & (points[:, 1] < y1)
-            side = (x2 - x1) * (points[:, 1] - y1) - (y2 - y1) * (points[:, 0] - x1)
-            winding += (up & (side > 0)).astype(np.int64) - (down & (side < 0)).astype(np.int64)
-        signed = np.where(winding != self._winding_outside, -away, away)
-        for x, y, radius in self.circles:
-            gap = np.hypot(points[:, 0] - x, points[:, 1] - y) - radius
-            signed = np.where(np.abs(gap) < np.abs(signed), gap, signed)
+        signed = np.empty(len(points))
+        _measure_clearance(points, self.edges, self.circles, self._winding_outside, signed)
         return signed
 
     def raster(self, resolution: float, margin: float = 0.5) -> Raster:
@@ -215,12 +207,34 @@ def _counter_clockwise(ring: NDArray[np.float64]) -> NDArray[np.float64]:
     return ring if area > 0 else ring[::-1].copy()
 
 
-def _segment_distance(points: NDArray[np.float64], x1: float, y1: float, x2: float, y2: float) -> NDArray[np.float64]:
-    ex, ey = x2 - x1, y2 - y1
-    length = max(ex * ex + ey * ey, 1e-300)
-    along = np.clip(((points[:, 0] - x1) * ex + (points[:, 1] - y1) * ey) / length, 0.0, 1.0)
-    distance: NDArray[np.float64] = np.hypot(points[:, 0] - x1 - along * ex, points[:, 1] - y1 - along * ey)
-    return distance
+@leaf
+def _measure_clearance(
+    points: NDArray[np.float64],
+    edges: NDArray[np.float64],
+    circles: NDArray[np.float64],
+    winding_outside: int,
+    signed: NDArray[np.float64],
+) -> None:
+    """Fill ``signed`` (n,) with the clearance of points (n, 2), see ``Floorplan.clearance``."""
+    for i in range(points.shape[0]):
+        x, y = points[i, 0], points[i, 1]
+        away, winding = np.inf, 0
+        for k in range(edges.shape[0]):
+            x1, y1, x2, y2 = edges[k]
+            ex, ey = x2 - x1, y2 - y1
+            length = max(ex * ex + ey * ey, 1e-300)
+            along = min(max(((x - x1) * ex + (y - y1) * ey) / length, 0.0), 1.0)
+            away = min(away, math.hypot(x - x1 - along * ex, y - y1 - along * ey))
+            side = ex * (y - y1) - ey * (x - x1)
+            if y1 <= y < y2 and side > 0.0:
+                winding += 1
+            elif y2 <= y < y1 and side < 0.0:
+                winding -= 1
+        nearest = away if winding == winding_outside else -away
+        for k in range(circles.shape[0]):
+            gap = math.hypot(x - circles[k, 0], y - circles[k, 1]) - circles[k, 2]
+            nearest = gap if abs(gap) < abs(nearest) else nearest
+        signed[i] = nearest
 
 
 def _grid_sides(occupied: NDArray[np.bool_]) -> NDArray[np.float64]:

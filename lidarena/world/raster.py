@@ -10,6 +10,8 @@ from lidarena.base.jit import leaf
 
 CLEARANCE_CAP = 1.0
 """Clearances are exact up to here [m]; larger ones are reported as this."""
+_MORE = 1.0 + 1e-6
+"""Squares of distances are compared with so much to spare that rounding decides nothing."""
 
 
 class Raster(NamedTuple):
@@ -51,12 +53,7 @@ def rasterize(
     _count_crossings(edges, origin[0], origin[1], resolution, winding)
     _edge_clearance(edges, origin[0], origin[1], resolution, clearance)
     solid = np.cumsum(winding[:, :-1], axis=1) != winding_outside
-    x = origin[0] + (np.arange(shape[1]) + 0.5) * resolution
-    y = origin[1] + (np.arange(shape[0]) + 0.5) * resolution
-    for cx, cy, radius in circles:
-        gap = np.hypot(x[None, :] - cx, y[:, None] - cy) - radius
-        solid |= gap < 0
-        clearance = np.minimum(clearance, np.abs(gap)).astype(np.float32)
+    _add_circles(circles, origin[0], origin[1], resolution, solid, clearance)
     return Raster(solid, clearance, origin, resolution)
 
 
@@ -99,7 +96,38 @@ def _edge_clearance(
             py = y0 + (row + 0.5) * resolution - y1
             for column in range(c0, c1 + 1):
                 px = x0 + (column + 0.5) * resolution - x1
+                cross, known = px * ey - py * ex, clearance[row, column]
+                if cross * cross > _MORE * known * known * squared:  # its whole line is farther: most cells end here
+                    continue
                 t = min(max((px * ex + py * ey) / squared, 0.0), 1.0)
-                away = math.hypot(px - t * ex, py - t * ey)
-                if away < clearance[row, column]:
-                    clearance[row, column] = away
+                dx, dy = px - t * ex, py - t * ey
+                if dx * dx + dy * dy <= _MORE * known * known:
+                    clearance[row, column] = min(known, math.hypot(dx, dy))
+
+
+@leaf
+def _add_circles(
+    circles: NDArray[np.float64],
+    x0: float,
+    y0: float,
+    resolution: float,
+    solid: NDArray[np.bool_],
+    clearance: NDArray[np.float32],
+) -> None:
+    """Make cells within circles ``solid`` and lower ``clearance`` to the distance from their rims."""
+    rows, columns = clearance.shape
+    for k in range(circles.shape[0]):
+        cx, cy, radius = circles[k]
+        reach = radius + CLEARANCE_CAP
+        r0, r1 = max(0, int((cy - reach - y0) / resolution)), min(rows - 1, int((cy + reach - y0) / resolution))
+        c0, c1 = max(0, int((cx - reach - x0) / resolution)), min(columns - 1, int((cx + reach - x0) / resolution))
+        for row in range(r0, r1 + 1):
+            dy = y0 + (row + 0.5) * resolution - cy
+            for column in range(c0, c1 + 1):
+                dx = x0 + (column + 0.5) * resolution - cx
+                farthest = radius + clearance[row, column]
+                if dx * dx + dy * dy > _MORE * farthest * farthest:
+                    continue
+                gap = math.hypot(dx, dy) - radius
+                solid[row, column] |= gap < 0.0
+                clearance[row, column] = min(clearance[row, column], abs(gap))

@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import merged
-from lidarena.world.lidar import NO_OUTLINE, LidarSpec, MapGeometry, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.lidar import NO_OUTLINE, LidarSpec, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.map_geometry import MapGeometry
 from lidarena.world.odometry import OdometryNoise, move, read_odometry
 
 

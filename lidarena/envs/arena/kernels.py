@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
-from lidarena.world.lidar import NO_OUTLINE, MapGeometry, Scanner, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.lidar import NO_OUTLINE, Scanner, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.map_geometry import MapGeometry
 
 
 class Measurements(NamedTuple):

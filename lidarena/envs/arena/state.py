@@ -11,7 +11,8 @@ from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way
 from lidarena.envs.arena.options import ArenaOptions, OwnSize
 from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.lidar import MapGeometry, Scanner, first_scan
+from lidarena.world.lidar import Scanner, first_scan
+from lidarena.world.map_geometry import MapGeometry
 from lidarena.world.physics import Physics
 from lidarena.world.robots import RobotSpec
 
