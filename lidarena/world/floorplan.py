@@ -66,10 +66,8 @@ class Floorplan:
         lines = np.asarray(walls, dtype=np.float64).reshape(-1, 4)
         if not np.isfinite(lines).all():
             raise MapError(f"map {name!r} has a wall whose coordinates are not finite")
-        rings = [_wall_rectangle(line, thickness) for line in lines]
-        rings += [_counter_clockwise(np.asarray(p, dtype=np.float64).reshape(-1, 2)) for p in polygons]
-        parts = [np.hstack([ring, np.roll(ring, -1, axis=0)]) for ring in rings]
-        edges = np.vstack([np.empty((0, 4)), *parts])
+        rings = [_ring_edges(np.asarray(ring, dtype=np.float64).reshape(-1, 2)) for ring in polygons]
+        edges = np.vstack([_wall_edges(lines, thickness), *rings])
         rounds = np.asarray(circles, dtype=np.float64).reshape(-1, 3)
         return cls._checked(name, edges, rounds, bounds, start)
 
@@ -191,20 +189,24 @@ class Floorplan:
         return (float(x[column]), float(y[row]), 0.0)
 
 
-def _wall_rectangle(line: NDArray[np.float64], thickness: float) -> NDArray[np.float64]:
-    ends = line.reshape(2, 2)
-    length = float(np.hypot(*(ends[1] - ends[0])))
-    along = (ends[1] - ends[0]) / length if length > 0 else np.array([1.0, 0.0])
-    along = along * (thickness / 2)
-    across = np.array([-along[1], along[0]])
-    a, b = ends[0] - along, ends[1] + along
-    return np.array([a - across, b - across, b + across, a + across])
+def _wall_edges(lines: NDArray[np.float64], thickness: float) -> NDArray[np.float64]:
+    """Edges (4 n, 4) of the rectangles around centre lines (n, 4), counter-clockwise."""
+    a, b = lines[:, :2], lines[:, 2:]
+    length = np.hypot(b[:, 0] - a[:, 0], b[:, 1] - a[:, 1])[:, None]
+    along = np.divide(b - a, length, out=np.tile([1.0, 0.0], (len(lines), 1)), where=length > 0.0) * (thickness / 2)
+    across = np.stack([-along[:, 1], along[:, 0]], axis=1)
+    a, b = a - along, b + along
+    corners = np.stack([a - across, b - across, b + across, a + across], axis=1)
+    return np.concatenate([corners, np.roll(corners, -1, axis=1)], axis=2).reshape(-1, 4)
 
 
-def _counter_clockwise(ring: NDArray[np.float64]) -> NDArray[np.float64]:
-    following = np.roll(ring, -1, axis=0)
-    area = np.sum(ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0])
-    return ring if area > 0 else ring[::-1].copy()
+def _ring_edges(ring: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Edges (n, 4) of a polygon (n, 2), counter-clockwise."""
+    following = np.concatenate([ring[1:], ring[:1]])
+    if np.sum(ring[:, 0] * following[:, 1] - ring[:, 1] * following[:, 0]) <= 0:
+        ring = ring[::-1]
+        following = np.concatenate([ring[1:], ring[:1]])
+    return np.hstack([ring, following])
 
 
 @leaf

@@ -24,7 +24,7 @@ _MAZE_OPTIONS = {
     "dead_ends": "dead_ends",
     "thickness": "thickness",
 }
-_ALLOWED = ["maze:SEED", "a path to a .yaml or .map file", "module:callable of a generator"]
+_ALLOWED = ["maze:SEED", "random:KIND", "a path to a .yaml or .map file", "module:callable of a generator"]
 _Stamp = tuple[tuple[int, int], ...]
 
 
@@ -41,8 +41,8 @@ def load_floorplan(spec: MapSpec, start: Pose | None = None) -> Floorplan:
             ``.map``, if wanted with the side of a cell in metres as in ``"den520d.map?cell=0.5"``; or
             ``"maze:SEED"``, if wanted with options as in
             ``"maze:7?width=10&height=8&corridor=1.2&loops=0.2&dead_ends=0.5&thickness=0.1"`` (see ``generate_maze``).
-            A ``Floorplan`` is passed through. Of a generator of one's own (see ``PlanGenerator``) or its
-            ``"module:callable"`` the plan with the number 0 is taken.
+            A ``Floorplan`` is passed through. Of ``"random:KIND"`` (see ``random_plan``), of a generator of one's own
+            (see ``PlanGenerator``) or its ``"module:callable"`` the plan with the number 0 is taken.
         start: Start pose x, y, theta instead of the plan's own [m, m, rad].
 
     Raises:

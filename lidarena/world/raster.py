@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf
+from lidarena.base.jit import inlined, leaf
 
 CLEARANCE_CAP = 1.0
 """Clearances are exact up to here [m]; larger ones are reported as this."""
@@ -49,9 +49,11 @@ def rasterize(
         winding_outside: Winding number of free space (see ``Floorplan``).
     """
     winding = np.zeros((shape[0], shape[1] + 1), dtype=np.int32)
-    clearance = np.full(shape, CLEARANCE_CAP, dtype=np.float32)
     _count_crossings(edges, origin[0], origin[1], resolution, winding)
-    _edge_clearance(edges, origin[0], origin[1], resolution, clearance)
+    squares = np.full(shape, CLEARANCE_CAP**2)
+    xs, ys = (origin[axis] + (np.arange(shape[1 - axis]) + 0.5) * resolution for axis in (0, 1))
+    _edge_distances(edges, xs, ys, squares)
+    clearance = np.sqrt(squares).astype(np.float32)
     solid = np.cumsum(winding[:, :-1], axis=1) != winding_outside
     _add_circles(circles, origin[0], origin[1], resolution, solid, clearance)
     return Raster(solid, clearance, origin, resolution)
@@ -79,30 +81,40 @@ def _count_crossings(
 
 
 @leaf
-def _edge_clearance(
-    edges: NDArray[np.float64], x0: float, y0: float, resolution: float, clearance: NDArray[np.float32]
+def _edge_distances(
+    edges: NDArray[np.float64], xs: NDArray[np.float64], ys: NDArray[np.float64], squares: NDArray[np.float64]
 ) -> None:
-    """Lower ``clearance`` (rows, columns) to the distance of each cell's centre to the edges."""
-    rows, columns = clearance.shape
+    """Lower ``squares`` (rows, columns) to the squared distance of each cell's centre to the edges.
+
+    Args:
+        edges: (E, 4).
+        xs: (columns,) of the centres [m].
+        ys: (rows,) of the centres [m].
+        squares: Output; exact up to the square of ``CLEARANCE_CAP``.
+    """
+    rows, columns = squares.shape
+    spacing = xs[1] - xs[0] if columns > 1 else CLEARANCE_CAP
     for k in range(edges.shape[0]):
         x1, y1, x2, y2 = edges[k]
         ex, ey = x2 - x1, y2 - y1
         squared = max(ex * ex + ey * ey, 1e-300)
-        r0 = max(0, int((min(y1, y2) - CLEARANCE_CAP - y0) / resolution))
-        r1 = min(rows - 1, int((max(y1, y2) + CLEARANCE_CAP - y0) / resolution))
-        c0 = max(0, int((min(x1, x2) - CLEARANCE_CAP - x0) / resolution))
-        c1 = min(columns - 1, int((max(x1, x2) + CLEARANCE_CAP - x0) / resolution))
-        for row in range(r0, r1 + 1):
-            py = y0 + (row + 0.5) * resolution - y1
-            for column in range(c0, c1 + 1):
-                px = x0 + (column + 0.5) * resolution - x1
-                cross, known = px * ey - py * ex, clearance[row, column]
-                if cross * cross > _MORE * known * known * squared:  # its whole line is farther: most cells end here
-                    continue
-                t = min(max((px * ex + py * ey) / squared, 0.0), 1.0)
-                dx, dy = px - t * ex, py - t * ey
-                if dx * dx + dy * dy <= _MORE * known * known:
-                    clearance[row, column] = min(known, math.hypot(dx, dy))
+        share = 1.0 / squared
+        r0, r1 = _centres_near(min(y1, y2) - CLEARANCE_CAP, max(y1, y2) + CLEARANCE_CAP, ys[0], spacing, rows)
+        c0, c1 = _centres_near(min(x1, x2) - CLEARANCE_CAP, max(x1, x2) + CLEARANCE_CAP, xs[0], spacing, columns)
+        for row in range(r0, r1):
+            py = ys[row] - y1
+            for column in range(c0, c1):  # without branches, so that the compiler takes several cells at once
+                px = xs[column] - x1
+                along, across = px * ex + py * ey, px * ey - py * ex
+                beyond = max(max(-along, along - squared), 0.0)
+                away = (across * across + beyond * beyond) * share
+                squares[row, column] = min(away, squares[row, column])
+
+
+@inlined
+def _centres_near(low: float, high: float, first: float, spacing: float, count: int) -> tuple[int, int]:
+    """First and last + 1 of ``count`` centres from ``low`` to ``high``, or one more on either side."""
+    return max(int((low - first) / spacing), 0), min(int((high - first) / spacing) + 2, count)
 
 
 @leaf

@@ -31,7 +31,9 @@ class Coverage(NamedTuple):
     origin: NDArray[np.float64]
 
 
-def measure_coverage(plan: Floorplan, resolution: float, robot: RobotSpec) -> Coverage:
+def measure_coverage(
+    plan: Floorplan, resolution: float, robot: RobotSpec, start_margin: float = START_MARGIN
+) -> Coverage:
     """Find K, against whose size completeness is measured: |known ∩ K| / |K|.
 
     A cell is wanted if the robot's disc, grown by what its collision distance asks for, can cover it, moving from the
@@ -43,6 +45,7 @@ def measure_coverage(plan: Floorplan, resolution: float, robot: RobotSpec) -> Co
         plan: The floor plan, with its start.
         resolution: Side of a cell [m].
         robot: Of an outline counts the circle that holds it, which can turn wherever it is.
+        start_margin: Random starts keep this far from every wall, where there is such a place [m].
 
     Raises:
         MapError: The robot does not fit where the plan's start is.
@@ -56,7 +59,7 @@ def measure_coverage(plan: Floorplan, resolution: float, robot: RobotSpec) -> Co
     covered = ~raster.solid & (away <= robot.bumper - BUMPER + 0.5 * resolution)
     beside = cv2.dilate(covered.astype(np.uint8), np.ones((3, 3), np.uint8)).astype(bool)
     surface = raster.solid & (raster.clearance <= 0.55 * resolution)
-    return Coverage(covered | (surface & beside), _start_places(reached, raster, robot), raster.origin)
+    return Coverage(covered | (surface & beside), _start_places(reached, raster, robot, start_margin), raster.origin)
 
 
 def check_start(plan: Floorplan, robot: RobotSpec) -> None:
@@ -88,7 +91,7 @@ def _connected(passable: NDArray[np.bool_], raster: Raster, start: tuple[float, 
     return reached
 
 
-def _start_places(reached: NDArray[np.bool_], raster: Raster, robot: RobotSpec) -> NDArray[np.float64]:
-    roomy = reached & (raster.clearance >= max(START_MARGIN, robot.bumper + _START_ROOM))
+def _start_places(reached: NDArray[np.bool_], raster: Raster, robot: RobotSpec, margin: float) -> NDArray[np.float64]:
+    roomy = reached & (raster.clearance >= max(margin, robot.bumper + _START_ROOM))
     cells = np.argwhere(roomy if roomy.any() else reached)
     return raster.origin + (cells[:, ::-1] + 0.5) * raster.resolution

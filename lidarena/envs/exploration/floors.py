@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import MapError
-from lidarena.envs.exploration.coverage import Coverage, check_start, measure_coverage
+from lidarena.envs.exploration.coverage import START_MARGIN, Coverage, check_start, measure_coverage
 from lidarena.world.changing_lidar import ChangingLidar
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.lidar import Lidar, LidarSpec
@@ -17,6 +17,8 @@ from lidarena.world.robots import RobotSpec
 
 _MARGIN = 0.5
 """How far the grid of a map reaches beyond its plan [m], see ``Floorplan.raster``."""
+_DRAWN_START_MARGIN = 0.3
+"""Random starts in drawn plans, which nobody has looked at, keep this far from every wall [m]."""
 
 
 class Floors(Protocol):
@@ -161,7 +163,7 @@ class DrawnFloors:
         plan = maker if isinstance(maker, Floorplan) else self._drawn_plan(maker, number)
         while len(self.plans) <= world:
             self.plans.append(plan)
-        coverage = _measured(plan, self._resolution, self._robot, self._at_start)
+        coverage = _measured(plan, self._resolution, self._robot, self._at_start, _DRAWN_START_MARGIN)
         self.plans[world], self._coverages[world] = plan, coverage
         self.wanted[world] = 0
         _write(self.wanted[world], coverage)
@@ -193,10 +195,12 @@ class DrawnFloors:
                 self._lay(world)
 
 
-def _measured(plan: Floorplan, resolution: float, robot: RobotSpec, at_start: bool) -> Coverage:
+def _measured(
+    plan: Floorplan, resolution: float, robot: RobotSpec, at_start: bool, start_margin: float = START_MARGIN
+) -> Coverage:
     if at_start:
         check_start(plan, robot)
-    return measure_coverage(plan, resolution, robot)
+    return measure_coverage(plan, resolution, robot, start_margin)
 
 
 def _write(wanted: NDArray[np.uint8], coverage: Coverage) -> None:

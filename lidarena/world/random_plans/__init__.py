@@ -9,7 +9,7 @@ from lidarena.base.errors import MapError, suggest
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.map_options import read_options
 from lidarena.world.random_plans import cave, furniture, mazes, rooms, warehouse
-from lidarena.world.random_plans.options import COMMON, checked_options, largest_sides
+from lidarena.world.random_plans.options import COMMON, checked_options, largest_sides, tightest_sizes
 
 __all__ = ["KINDS", "MIXED", "RandomPlans", "options_of", "random_plan", "random_plans"]
 
@@ -72,7 +72,7 @@ class RandomPlans:
         size: Width and height of the largest plan that may be drawn [m].
 
     Raises:
-        MapError: There is no such kind or option, or one is out of range.
+        MapError: There is no such kind or option, one is out of range, or nothing fits into the smallest plans.
     """
 
     def __init__(self, kind: str, options: Mapping[str, float]) -> None:
@@ -81,6 +81,15 @@ class RandomPlans:
         self.kind, self.options = kind, checked_options(kind, options, own)
         self.size = largest_sides(self.options)
         self.__name__ = f"random:{kind}"
+        self._try_tightest()
+
+    def _try_tightest(self) -> None:
+        """Draw plans of the sizes into which the least fits: better refused now than in the middle of a training."""
+        chosen = {name: value for name, value in self.options.items() if name not in COMMON}
+        for width, height in tightest_sizes(self.options):
+            for kind in KINDS if self.kind == MIXED else (self.kind,):
+                draw, _ = KINDS[kind]
+                draw(np.random.default_rng(0), chosen | {"width": width, "height": height}, self.__name__)
 
     def __call__(self, rng: np.random.Generator) -> Floorplan:
         """Draw a plan."""
@@ -92,7 +101,7 @@ def random_plans(spec: str) -> RandomPlans:
     """Return what draws the plans of a spec such as ``"random:rooms"`` or ``"random:maze?area_max=60&loops=0.2"``.
 
     Raises:
-        MapError: There is no such kind or option, or one is out of range.
+        MapError: There is no such kind or option, one is out of range, or nothing fits into the smallest plans.
     """
     kind, _, text = spec.removeprefix("random:").partition("?")
     return RandomPlans(kind, read_options(spec, text, list(options_of(kind))))

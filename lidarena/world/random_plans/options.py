@@ -69,8 +69,7 @@ def draw_size(rng: np.random.Generator, given: Mapping[str, float]) -> tuple[flo
     """
     if "width" in given:
         return given["width"], given["height"]
-    low = given.get("area", given.get("area_min", min(_USUAL_AREAS[0], given.get("area_max", MOST_AREA))))
-    high = given.get("area", given.get("area_max", max(_USUAL_AREAS[1], low)))
+    low, high = _areas(given)
     area = math.exp(rng.uniform(math.log(low), math.log(high)))
     ratio = math.exp(rng.uniform(-1.0, 1.0) * math.log(_LONGEST))
     width = round(math.sqrt(area * ratio), 1)
@@ -81,6 +80,20 @@ def largest_sides(given: Mapping[str, float]) -> tuple[float, float]:
     """Return the largest width and height that ``draw_size`` draws [m]."""
     if "width" in given:
         return given["width"], given["height"]
-    area = given.get("area", given.get("area_max", max(_USUAL_AREAS[1], given.get("area_min", 0.0))))
-    side = round(math.sqrt(area * _LONGEST), 1) + 0.1  # as sizes are rounded
+    side = round(math.sqrt(_areas(given)[1] * _LONGEST), 1) + 0.1  # as sizes are rounded
     return side, side
+
+
+def tightest_sizes(given: Mapping[str, float]) -> list[tuple[float, float]]:
+    """Return the widths and heights that ``draw_size`` draws into which the least fits: the narrowest, and a square."""
+    if "width" in given:
+        return [(given["width"], given["height"])]
+    area, _ = _areas(given)
+    widths = (round(math.sqrt(area * ratio), 1) for ratio in (_LONGEST, 1.0))
+    return [(width, area / width) for width in widths]
+
+
+def _areas(given: Mapping[str, float]) -> tuple[float, float]:
+    """The smallest and the largest area to draw from [m²]."""
+    low = given.get("area", given.get("area_min", min(_USUAL_AREAS[0], given.get("area_max", MOST_AREA))))
+    return low, given.get("area", given.get("area_max", max(_USUAL_AREAS[1], low)))

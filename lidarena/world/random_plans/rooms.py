@@ -84,8 +84,10 @@ def draw_rooms(rng: np.random.Generator, options: Mapping[str, float]) -> RoomPl
         MapError: No two rooms fit.
     """
     width, height = draw_size(rng, options)
-    thickness, least = options.get("thickness", _THICKNESS), options.get("room", _ROOM)
-    if max(width, height) - thickness < 2.0 * least:
+    thickness = options.get("thickness", _THICKNESS)
+    inner = max(width, height) - thickness
+    least = options.get("room", min(_ROOM, 0.5 * inner))
+    if inner < 2.0 * least:
         raise MapError(
             f"a plan of {width:g} m x {height:g} m has no room for two rooms of {least:g} m; "
             "a smaller room= or a larger plan is needed"

@@ -1,4 +1,4 @@
-"""Warehouses: rows of racks, solid or on thin posts, with aisles between them and an open end."""
+"""Warehouses: rows of racks, solid or on thin posts with pallets between them, aisles, and an open end."""
 
 import math
 from collections.abc import Mapping
@@ -9,17 +9,20 @@ from numpy.typing import NDArray
 from lidarena.base.errors import MapError
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.random_plans.options import draw_size
+from lidarena.world.random_plans.pieces import LEG, Box, Circle
 
 OPTIONS = {"aisle": (0.8, 4.0), "rack": (0.4, 2.0), "posts": (0.0, 1.0)}
 """Least width of an aisle [m]; depth of a rack [m]; share of the racks that stand on posts."""
-_AISLE, _RACK, _POSTS = 1.2, 0.8, 0.4
+_AISLE, _RACK, _POSTS = 1.2, 0.8, 0.5
+_LEAST_AISLE = 0.8
+"""Width of the aisles of halls that are too narrow for wider ones [m]."""
 _WALL = 0.1
-_POST = (0.02, 0.03)
-"""Radius of a post [m]."""
-_BAY = 1.1
+_BAY = 1.4
 """Longest distance between the posts of a rack [m]."""
-_PALLET = (0.5, 0.9)
-"""Sides of the pallets at the open end [m]."""
+_STORED = 0.45
+"""Chance that something stands on the floor between the posts."""
+_BESIDE = 0.07
+"""From that to the posts' middles [m]: no robot fits in between."""
 
 
 def random_warehouse(rng: np.random.Generator, options: Mapping[str, float], name: str) -> Floorplan:
@@ -29,8 +32,9 @@ def random_warehouse(rng: np.random.Generator, options: Mapping[str, float], nam
         MapError: No rack fits between two aisles.
     """
     width, height = draw_size(rng, options)
-    aisle, rack = options.get("aisle", _AISLE), options.get("rack", _RACK)
-    if min(width, height) - 2.0 * _WALL < 2.0 * aisle + rack:
+    narrow, rack = min(width, height) - 2.0 * _WALL, options.get("rack", _RACK)
+    aisle = options.get("aisle", max(min(_AISLE, 0.5 * (narrow - rack)), _LEAST_AISLE))
+    if narrow < 2.0 * aisle + rack - 1e-9:
         raise MapError(
             f"a warehouse of {width:g} m x {height:g} m has no room for a rack of {rack:g} m between aisles of "
             f"{aisle:g} m; smaller ones, or a larger plan, are needed"
@@ -58,18 +62,17 @@ def _racks(
     rows = max(int((inner - aisle) / (aisle + rack)), 1)
     step = (inner - rows * rack) / (rows + 1) + rack
     low, high = _WALL + aisle, long - _WALL - aisle * float(rng.uniform(1.0, 2.0))
-    boxes: list[tuple[float, float, float, float]] = []
-    legs: list[tuple[float, float, float]] = []
+    boxes: list[Box] = []
+    legs: list[Circle] = []
     for row in range(rows):
         y = _WALL + (row + 1) * step - rack
         for x0, x1 in _pieces(rng, low, max(high, low + 0.5), aisle):
             if rng.random() < posts:
-                legs += _standing(rng, x0, x1, y, rack)
-            elif rng.random() < 0.9:
-                boxes.append((x0, y, x1, y + rack))
+                standing, stored = _standing(rng, (x0, x1), y, rack)
+                legs += standing
+                boxes += stored
             else:
-                deep = float(rng.uniform(*_PALLET))
-                boxes.append((x0, y, min(x0 + deep, x1), y + min(deep, rack)))
+                boxes.append((x0, y, x1, y + rack))
     return np.array(boxes).reshape(-1, 4), np.array(legs).reshape(-1, 3)
 
 
@@ -82,8 +85,16 @@ def _pieces(rng: np.random.Generator, low: float, high: float, aisle: float) -> 
 
 
 def _standing(
-    rng: np.random.Generator, x0: float, x1: float, y: float, rack: float
-) -> list[tuple[float, float, float]]:
-    """Posts of a rack on both its sides."""
-    radius, bays = float(rng.uniform(*_POST)), max(math.ceil((x1 - x0) / _BAY), 1)
-    return [(float(x), side, radius) for x in np.linspace(x0, x1, bays + 1) for side in (y + radius, y + rack - radius)]
+    rng: np.random.Generator, ends: tuple[float, float], y: float, rack: float
+) -> tuple[list[Circle], list[Box]]:
+    """Posts of a rack on both its sides, and what is stored on the floor of some of its bays."""
+    radius, bays = float(rng.uniform(*LEG)), max(math.ceil((ends[1] - ends[0]) / _BAY), 1)
+    xs = np.linspace(*ends, bays + 1).tolist()
+    posts = [(x, side, radius) for x in xs for side in (y + radius, y + rack - radius)]
+    full = rng.random(bays) < _STORED
+    stored = [
+        (a + _BESIDE, y + LEG[1], b - _BESIDE, y + rack - LEG[1])
+        for a, b, one in zip(xs[:-1], xs[1:], full.tolist(), strict=True)
+        if one
+    ]
+    return posts, stored

@@ -22,20 +22,25 @@ STEPS = 40
 CASES: dict[str, dict[str, Any]] = {
     "one size": {"map": room, "reward": "combined"},
     "named": {"map": f"{HERE}:Rooms", "slam": "truth", "start": "random"},
+    "random plans": {"map": "random:mixed?area_min=20&area_max=40", "slam": "truth", "start": "random"},
     "with others": {"map": [Rooms(), "env1", f"{HERE}:room"], "observation": "map"},
 }
 every_case = pytest.mark.parametrize("case", CASES)
 
 
+def shape_of(env: Any) -> bytes:
+    return raw(env.unwrapped.floorplan.edges) + raw(env.unwrapped.floorplan.circles)
+
+
 def alone(seed: int, keywords: dict[str, Any]) -> tuple[list[bytes], set[bytes]]:
     env: Any = gym.make("lidarena/Exploration-v0", max_episode_steps=15, **keywords)
     observation, info = env.reset(seed=seed)
-    record, plans = [raw(observation) + raw(info)], {raw(env.unwrapped.floorplan.circles)}
+    record, plans = [raw(observation) + raw(info)], {shape_of(env)}
     for action in np.random.default_rng(seed).integers(0, 3, STEPS):
         observation, reward, terminated, truncated, info = env.step(action)
         if terminated or truncated:
             observation, info = env.reset()
-            plans.add(raw(env.unwrapped.floorplan.circles))
+            plans.add(shape_of(env))
         record.append(raw(observation) + raw(info) + raw([reward, terminated, truncated]))
     return record, plans
 
@@ -158,3 +163,32 @@ def test_fixed_plans_are_shared() -> None:
     batch.reset(seed=0)
     floors = batch.episodes.core.floors
     assert floors.plans == [load_floorplan("env1"), load_floorplan("env2")] and len(floors.wanted) == 2
+
+
+def test_random_starts_in_drawn_plans_are_roomy() -> None:
+    batch: Any = gym.make_vec(
+        "lidarena/Exploration-v0", 6, "vector_entry_point", map="random:mixed", start="random", slam="truth"
+    )
+    for seed in (0, 6):
+        batch.reset(seed=seed)
+        core = batch.unwrapped.episodes.core
+        for world in range(6):
+            assert core.plans[world].clearance(core.physics.poses[world, :, :2])[0] >= 0.3
+
+
+@pytest.mark.parametrize(
+    ("spec", "sentence"),
+    [
+        ("random:furnishd", "no kind of random plans 'furnishd'; did you mean 'furnished'"),
+        ("random:rooms?dor=1", "no option 'dor'; did you mean 'door'"),
+        ("random:rooms?door=one", "door 'one'; a number is needed"),
+        ("random:maze?area=10", "area 10; 20 to 400 are allowed"),
+        ("random:warehouse?area=20&aisle=3", "no room for a rack"),
+        ("random:rooms?area_min=20&room=5", "no room for two rooms of 5 m"),
+        ("random", "'random' is not known; did you mean 'random:KIND'"),
+    ],
+)
+def test_random_plans_that_cannot_be_are_refused_when_worlds_are_made(spec: str, sentence: str) -> None:
+    with pytest.raises(MapError, match=sentence) as refusal:
+        gym.make_vec("lidarena/Exploration-v0", 2, "vector_entry_point", map=spec, slam="truth")
+    assert "\n" not in str(refusal.value)
