@@ -10,7 +10,7 @@ import numpy as np
 from lidarena.base.files import write_figure
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import Episode
-from lidarena.evaluation.palette import LINES
+from lidarena.evaluation.palette import line_of
 from lidarena.evaluation.picture import Bounds, Picture
 from lidarena.evaluation.progress_curve import ProgressCurve, progress_band
 from lidarena.evaluation.runner import place_of
@@ -132,7 +132,7 @@ def _draw_progress(axes: "Axes", row: Sequence[Cell]) -> None:
     times = np.linspace(0.0, end, CURVE_POINTS)
     for index, cell in enumerate(row):
         mean, low, high = (measure.scale * values for values in progress_band(cell.curves, times))
-        colour, dashes = LINES[index % len(LINES)]
+        colour, dashes = line_of(index)
         axes.plot(times, mean, dashes, color=colour, label=cell.policy.title)
         axes.fill_between(times, low, high, color=colour, alpha=0.15, linewidth=0)
     axes.set_title(f"{row[0].env.label} ({len(row[0].episodes)} episodes each)", fontsize=10)

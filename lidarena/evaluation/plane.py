@@ -251,7 +251,13 @@ def _document(plane: Plane) -> dict[str, Any]:
 
 
 def _verdict(point: PlanePoint, line: Sequence[PlanePoint]) -> dict[str, Any]:
-    """Whether and by which factor a point is beyond a line, with the 95% interval over episodes drawn anew."""
+    """Whether and by which factor a point is beyond a line, with the 95% interval over episodes drawn anew.
+
+    Points of the line that explore less do not count; beyond a line without others is everything.
+    """
+    line = [other for other in line if other.level]
+    if not line:
+        return {"beyond": True, "factor": None, "ci_low": None, "ci_high": None}
     factor = float(np.exp(beyond(point.logs, np.array([other.logs for other in line]))))
     again = beyond(point.resampled, np.stack([other.resampled for other in line], axis=1))
     low, high = map(_or_null, np.exp(np.percentile(again, _BOUNDS)).tolist())

@@ -11,7 +11,6 @@ from lidarena.base.files import write_figure
 from lidarena.evaluation.comparison_config import file_name
 from lidarena.evaluation.palette import BLUE, GREEN, GREY, PINK, VERMILION
 from lidarena.evaluation.plane import Plane, PlanePoint
-from lidarena.evaluation.statistics import LEAST_SAMPLES
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +22,13 @@ _DPI = 120
 _ROOM = 0.12
 """Around the points, of the span in logarithms, or as much as a factor of …"""
 _LEAST_ROOM = np.log(1.15)
-_TICKS = tuple(step * 10.0**power for power in range(-9, 7) for step in (1, 1.5, 2, 3, 4, 5, 6, 8))
+_STEPS = (
+    (1, 1.5, 2, 3, 4, 5, 6, 8),
+    (1, 1.2, 1.4, 1.6, 1.8, 2, 2.5, 3, 3.5, 4, 4.5, 5, 5.5, 6, 6.5, 7, 8, 9),
+    tuple(step / 20 for step in range(20, 200)),
+)
+"""Where a decade of an axis has ticks: the first that give `_FEW`."""
+_FEW = 4
 _AROUND = ((7, 5), (7, -13), (-7, 5), (-7, -13), (0, 9), (0, -17), (12, -4), (-12, -4))
 """Where a name may stand, from its point [points]; negative to the left."""
 
@@ -93,11 +98,19 @@ def _scale(axes: "Axes", plane: Plane) -> None:
     (left, bottom), (right, top) = _shown(plane, low - room), _shown(plane, high + room)
     axes.set(xscale="log", yscale="log", xlim=(left, right), ylim=(bottom, top))
     for axis, (begin, end) in ((axes.xaxis, (left, right)), (axes.yaxis, (bottom, top))):
-        ticks = [tick for tick in _TICKS if begin <= tick <= end]
+        ticks = _ticks(begin, end)
         axis.set_major_locator(FixedLocator(ticks))
         axis.set_major_formatter(FixedFormatter([f"{tick:g}" for tick in ticks]))
         axis.set_minor_locator(NullLocator())
     axes.grid(alpha=0.25)
+
+
+def _ticks(begin: float, end: float) -> list[float]:
+    for steps in _STEPS:
+        ticks = [tick for power in range(-9, 7) for step in steps if begin <= (tick := step * 10.0**power) <= end]
+        if len(ticks) >= _FEW:
+            break
+    return ticks
 
 
 def _shade(axes: "Axes", plane: Plane) -> None:
@@ -142,7 +155,8 @@ def _explain(axes: "Axes", plane: Plane) -> None:
     axes.set_xlabel(f"{labels[0]}   ← better{hints[0]}")
     axes.set_ylabel(f"{labels[1]}   ← better{hints[1]}")
     count = f"{plane.episodes} episodes, the same for all" if plane.episodes > 1 else "one episode"
-    means = "; means with 95% intervals" if plane.episodes >= LEAST_SAMPLES else ""
+    known = any(np.isfinite(point.resampled).all() for point in plane.points)
+    means = "; means with 95% intervals" if known else ""
     axes.set_title(f"{plane.title}: {count}{means}\nDown and to the left is better", fontsize=11)
     axes.plot([], [], "s", color=GREY, label="a rule, untrained")
     if not all(point.level for point in plane.points):

@@ -152,6 +152,16 @@ def test_the_document_says_who_is_beyond_whom(tmp_path: Path) -> None:
     assert document == front_document(planes, pooled(planes, "frontier"))
 
 
+def test_an_agent_that_explores_less_holds_no_line() -> None:
+    rows = [row(p.title, "Env", *MEANS[p.title], np.ones(6)) for p in POLICIES[:2]]
+    for policy, path in ((POLICIES[3], 10.0), (POLICIES[4], 12.0)):
+        worse = {"path_length": [path] * 6, "d_optimality_per_metre": [1e-5] * 6}
+        rows.append(row_of(policy.title, "Env", completeness=[0.5] * 6, **worse))
+    document = front_document(planes_of(rows, [*POLICIES[:2], *POLICIES[3:]]), None)
+    assert all(verdict["beyond"] and verdict["factor"] is None for verdict in document["planes"][0]["rules"])
+    assert not any(point["level"] for point in document["planes"][0]["points"][2:])
+
+
 def test_few_episodes_have_no_intervals() -> None:
     rows = [row(p.title, "Env", *MEANS[p.title], np.ones(2)) for p in POLICIES]
     document = front_document(planes_of(rows, POLICIES), None)

@@ -3,6 +3,7 @@
 from pathlib import Path
 
 import numpy as np
+import pytest
 from matplotlib.figure import Figure
 from PIL import Image
 
@@ -53,6 +54,15 @@ def test_names_do_not_cover_each_other() -> None:
     figure.draw_without_rendering()
     boxes = [text.get_window_extent() for text in figure.axes[0].texts]
     assert not any(a.overlaps(b) for k, a in enumerate(boxes) for b in boxes[:k])
+
+
+@pytest.mark.parametrize(("low", "high"), [(0.2, 0.25), (10, 11), (1, 1000), (0.014, 0.3)])
+def test_axes_have_ticks_whatever_they_span(low: float, high: float) -> None:
+    means = dict.fromkeys(MEANS, (low, low)) | {"frontier": (high, high)}
+    [plane] = planes_of([row(p.title, "Env", *means[p.title], np.ones(6)) for p in POLICIES], POLICIES)
+    axes = draw_plane(plane).axes[0]
+    for ticks, (begin, end) in ((axes.get_xticks(), axes.get_xlim()), (axes.get_yticks(), axes.get_ylim())):
+        assert sum(begin <= tick <= end for tick in ticks) >= 3
 
 
 def test_few_episodes_and_equal_policies_are_drawn_too() -> None:
