@@ -15,10 +15,10 @@ Function = TypeVar("Function", bound=Callable[..., Any])
 
 _INTO_A_FOLDER = {
     "agents.corridor": "shared_fleet_agent",
-    "agents.exploration": "goal_choice_agent goal_choice_env",
+    "agents.exploration": "goal_choice_agent",
     "baselines.arena": "apf apf_global apf_improved apf_improved_lidar apf_lidar astar",
     "baselines.corridor": "deviation_model learn_deviation team_driving team_planners team_search",
-    "baselines.exploration": "driving ealc frontier goal_choice topological_graph",
+    "baselines.exploration": "driving ealc frontier topological_graph",
     "envs.exploration": "coverage",
     "evaluation.team_planning": "team_experiment team_problems team_tables",
     "planning.grid": "frontiers grid_search inflation path_following steering",

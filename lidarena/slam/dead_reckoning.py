@@ -5,12 +5,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf, take_next
+from lidarena.base.jit import leaf
 from lidarena.slam.estimator import EstimatorSettings, Floats
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
-from lidarena.slam.readings import ScanGeometry, Share, reading_of
+from lidarena.slam.readings import ScanGeometry, Share, next_world, reading_of
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, compound_covariance, d_optimality
 from lidarena.world.odometry import deviations, move
@@ -69,7 +69,7 @@ def sense_and_reckon(
 
     ``d_optimalities`` (worlds,) is set to the D-optimality; the other arrays are those of ``DeadReckoningEstimator``.
     """
-    w = take_next(share.counter)
+    w = next_world(share)
     while w < share.last:
         sense(w, sensing)
         reading = reading_of(w, sensing)
@@ -82,4 +82,4 @@ def sense_and_reckon(
                 covariance[w, k, j] = drift[w, k, j] + (COVARIANCE_FLOOR[k] if j == k else 0.0)
         d_optimalities[w] = d_optimality(covariance[w])
         map_scan(w, reading, geometry, parameters, estimate[w], since, maps, outlines, share.thread)
-        w = take_next(share.counter)
+        w = next_world(share)

@@ -161,8 +161,8 @@ class BatchEstimator(ABC):
     def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Sense and estimate in the worlds of a thread's share; runs on every thread at once."""
 
-    def finish(self, sensing: Sensing, first: int, last: int) -> None:  # noqa: B027 - most have nothing to do
-        """Do in worlds ``first`` … ``last`` - 1 what must not run on several threads; here nothing."""
+    def finish(self, sensing: Sensing, first: int, last: int, active: NDArray[np.bool_]) -> None:  # noqa: B027
+        """Do in the ``active`` of worlds ``first`` … ``last`` - 1 what must not run on threads; here nothing."""
 
     def scaled_entropy(self) -> NDArray[np.float64] | None:
         """Entropy of the belief over the largest it could have, (worlds,) in [0, 1]; None where there is none."""

@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import merged
+from lidarena.base.jit import merged, take_next
 from lidarena.world.sensors import Sensing
 
 
@@ -46,11 +46,22 @@ class Share(NamedTuple):
         counter: (1,) the next world; threads share it, see ``lidarena.base.jit.take_next``.
         last: World after the last.
         thread: Number of the thread.
+        active: (worlds,) bool: the others are passed over.
     """
 
     counter: NDArray[np.int64]
     last: int
     thread: int
+    active: NDArray[np.bool_]
+
+
+@merged
+def next_world(share: Share) -> int:
+    """The next world of a share that is active; ``share.last`` or more once there is none."""
+    w = take_next(share.counter)
+    while w < share.last and not share.active[w]:
+        w = take_next(share.counter)
+    return w
 
 
 @merged

@@ -3,12 +3,12 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf, take_next
+from lidarena.base.jit import leaf
 from lidarena.slam.estimator import EstimatorSettings
 from lidarena.slam.known_pose_mapping import KnownPoseEstimator, map_scan
 from lidarena.slam.occupancy import OccupancyMaps
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
-from lidarena.slam.readings import ScanGeometry, Share, reading_of
+from lidarena.slam.readings import ScanGeometry, Share, next_world, reading_of
 from lidarena.slam.scan_outline import Outlines
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR
 from lidarena.world.sensors import Sensing, sense
@@ -50,10 +50,10 @@ def sense_and_map(
     outlines: Outlines,
 ) -> None:
     """Read the sensors and map with the true poses, world after world."""
-    w = take_next(share.counter)
+    w = next_world(share)
     while w < share.last:
         sense(w, sensing)
         for k in range(3):
             estimate[w, k] = sensing.poses[w, 0, k]
         map_scan(w, reading_of(w, sensing), geometry, parameters, estimate[w], since, maps, outlines, share.thread)
-        w = take_next(share.counter)
+        w = next_world(share)

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import EstimatorError
 from lidarena.base.generator_state import generator_from_words, generator_words
-from lidarena.base.jit import leaf, take_next
+from lidarena.base.jit import leaf
 from lidarena.slam.estimator import (
     BatchEstimator,
     EstimatorSettings,
@@ -18,7 +18,7 @@ from lidarena.slam.estimator import (
     ScanSpec,
     WorldEstimator,
 )
-from lidarena.slam.readings import Share
+from lidarena.slam.readings import Share, next_world
 from lidarena.slam.uncertainty import COVARIANCE_FLOOR, d_optimality
 from lidarena.world.odometry import wrap
 from lidarena.world.sensors import Sensing, sense
@@ -82,9 +82,9 @@ class WorldEstimators(BatchEstimator):
         """Read the sensors of world after world."""
         sense_only(sensing, share)
 
-    def finish(self, sensing: Sensing, first: int, last: int) -> None:
-        """Tell the estimators of worlds ``first`` … ``last`` - 1 what was measured, and take over what they believe."""
-        for world in range(first, last):
+    def finish(self, sensing: Sensing, first: int, last: int, active: NDArray[np.bool_]) -> None:
+        """Tell the estimators of the active worlds what was measured, and take over what they believe."""
+        for world in (first + np.flatnonzero(active[first:last])).tolist():
             begins = self._updates[world] == 0
             reading = np.zeros(3) if begins else sensing.sensors.readings[world, 0].copy()
             time = float(self._updates[world]) * sensing.period
@@ -196,7 +196,7 @@ def _kind(thing: Any) -> str:
 @leaf
 def sense_only(sensing: Sensing, share: Share) -> None:
     """Read the sensors of world after world."""
-    w = take_next(share.counter)
+    w = next_world(share)
     while w < share.last:
         sense(w, sensing)
-        w = take_next(share.counter)
+        w = next_world(share)

@@ -35,7 +35,13 @@ class Physics(Spaces):
         super().place(world, plan, poses, spec)
         self.touched[world] = False
 
-    def advance(self, commands: NDArray[np.float64], duration: float, near: NDArray[np.bool_]) -> None:
+    def advance(
+        self,
+        commands: NDArray[np.float64],
+        duration: float,
+        near: NDArray[np.bool_],
+        active: NDArray[np.bool_] | None = None,
+    ) -> None:
         """Drive every robot for ``duration`` seconds and update ``poses``.
 
         Each step moves a body along the chord of the arc that the wheels describe, so a step of any length ends where
@@ -46,11 +52,12 @@ class Physics(Spaces):
             commands: ``(worlds, robots, 2)`` forward speed [m/s] and turn rate [rad/s].
             duration: [s].
             near: ``(worlds,)`` whether some robot of a world may touch something; see ``may_touch``.
+            active: ``(worlds,)`` the others stand still; None: all are.
         """
         self.touched[:] = False
-        for world in np.flatnonzero(near).tolist():
+        for world in np.flatnonzero(near if active is None else near & active).tolist():
             self._push(world, commands[world].tolist(), duration)
-        glide(near, commands, duration, self.poses)
+        glide(near if active is None else near | ~active, commands, duration, self.poses)
 
     def _push(self, world: int, commands: list[list[float]], duration: float) -> None:
         """Drive one world's robots among obstacles, in short steps.

@@ -10,10 +10,10 @@ import pytest
 
 from lidarena import agents
 from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
-from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.base.errors import PolicyFileError
 from lidarena.envs.corridor import SHARED_ID
 
+GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
 RECORDED = {
     "arena": ("addd9e8083de9143", "9c66f16af133022c"),
     "combined": ("eb0f6c72950363f0", "18f97acab8b46f01"),

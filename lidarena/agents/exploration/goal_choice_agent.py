@@ -1,54 +1,63 @@
 """A network that was trained to choose where to explore next, as a policy for the exploration environments."""
 
+from collections.abc import Mapping
 from typing import Any
 
+import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.base.errors import PolicyFileError
-from lidarena.baselines.exploration.frontier_features import CANDIDATES, FEATURES
-from lidarena.baselines.exploration.goal_choice import GoalChoicePolicy
+from lidarena.baselines.exploration.choosing_explorer import ChoosingExplorer
+from lidarena.envs.exploration.goal_choice.episodes import LARGEST
+from lidarena.envs.exploration.goal_choice.features import FEATURES
+from lidarena.envs.exploration.goal_choice.options import GoalChoiceOptions
+
+_TOLD = ("candidates", "places", "least_frontier", "choice_period")
 
 
 class GoalChoiceAgent:
-    """Explores where a trained network chooses to, driving as ``GoalChoicePolicy`` does.
+    """Explores where a trained network chooses to; see ``ChoosingExplorer``.
 
     Attributes:
         learned: The network; of ``lidarena/GoalChoice-v0``.
     """
 
-    def __init__(self, env: Any, learned: LearnedPolicy) -> None:
+    def __init__(self, env: Any, learned: LearnedPolicy, *, preference: float = 0.5) -> None:
         """Make it for an exploration environment.
 
         Args:
             env: The environment; any ``observation``, ``reward`` or ``action``.
             learned: What `lidarena.agents.load` gave.
+            preference: How much certainty is worth, from 0, the shortest way, to 1, the surest.
 
         Raises:
+            ConfigError: A preference out of range.
             PolicyFileError: The network was trained on other features of the candidates.
         """
         shape = learned.observation_space.shape
-        if shape != (CANDIDATES, FEATURES):
+        if shape is None or len(shape) != 2 or shape[1] != FEATURES + shape[0]:
             raise PolicyFileError(
-                f"the agent was trained to choose by features of shape {shape}, this version tells it "
-                f"{(CANDIDATES, FEATURES)}: train it anew"
+                f"the agent was trained to choose by features of shape {shape}, but this version tells {FEATURES} of "
+                "each candidate, and the ways to all: train it anew"
             )
         self.learned = learned
-        self._policy = GoalChoicePolicy(env, self._choose)
+        trained = {name: learned.env_keywords.get(name, getattr(GoalChoiceOptions, name)) for name in _TOLD}
+        self._explorer = ChoosingExplorer(env, self._choose, preference=preference, **trained)
 
-    def _choose(self, features: NDArray[Any]) -> int:
-        return int(self.learned.act(features, {"action_mask": features[:, 0] > 0.5}))
+    def _choose(self, rows: NDArray[np.float32]) -> int:
+        return int(self.learned.act(np.clip(rows, -LARGEST, LARGEST), {"action_mask": rows[:, 0] > 0.5}))
 
     @property
     def finished(self) -> bool:
-        """Whether nothing is left to explore, and the robot is where it wants to end."""
-        return self._policy.finished
+        """Whether nothing is left to explore."""
+        return self._explorer.finished
 
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; ``seed`` matters only if the network draws its choices."""
         self.learned.reset(seed)
-        self._policy.reset(seed)
+        self._explorer.reset(seed)
 
-    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+    def act(self, observation: Any, info: Mapping[str, Any]) -> Any:
         """Return the next action of the exploration environment."""
-        return self._policy.act(observation, info)
+        return self._explorer.act(observation, info)

@@ -36,6 +36,7 @@ class Robot:
             forward, turning on the spot and wide arcs.
         period: Seconds between two actions.
         spec: Its size and limits.
+        options: Of the environment.
     """
 
     def __init__(self, env: Any) -> None:
@@ -46,7 +47,7 @@ class Robot:
         """
         space = getattr(env, "single_action_space", env.action_space)
         owner = owner_of(env, "options")
-        options = ExplorationOptions() if owner is None else owner.options
+        options = self.options = ExplorationOptions() if owner is None else owner.options
         self.spec, self.period, self._lidar = options.robot, options.decision_period, options.lidar
         self._observation = str(options.observation).removesuffix(ENTROPY)
         self._discrete = isinstance(space, gym.spaces.Discrete)
@@ -68,8 +69,11 @@ class Robot:
         return command if self._discrete else box_action(self.spec, *self.commands.velocities[command].tolist())
 
     def beams_in(self, observation: Any, info: Mapping[str, Any]) -> Any:
-        """Return an observation that holds beams: the environment's own, else the scan in ``info``."""
-        if self._observation in _KNOWN or "scan" not in info:
+        """Return an observation that holds beams: the whole scan in ``info``, else the environment's own.
+
+        DA-SLAM's five beams would miss a chair's leg between two of them.
+        """
+        if "scan" not in info:
             return observation
         return {"scan": np.asarray(info["scan"], np.float64) / self._lidar.max_range}
 

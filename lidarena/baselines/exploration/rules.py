@@ -11,10 +11,10 @@ from lidarena.base.errors import ConfigError
 from lidarena.base.jit import kernel
 from lidarena.baselines.exploration.driving import Terrain
 from lidarena.baselines.exploration.frontier import FrontierPolicy
-from lidarena.baselines.exploration.frontier_features import beginning_of_way
 from lidarena.baselines.registry import register
 from lidarena.planning.grid.frontiers import Frontier, find_frontiers
-from lidarena.planning.grid.grid_search import path_costs
+from lidarena.planning.grid.way_lengths import LEG, first_leg
+from lidarena.planning.grid.way_lengths import way_lengths as lengths_in_cells
 
 _BEYOND = 1e3  # the way to a goal that cannot be reached counts as so long (m)
 _ADVANTAGE_CELL = 0.25  # ways for the distance advantage are found on a grid of such cells (m)
@@ -48,8 +48,7 @@ class RuledFrontierPolicy(FrontierPolicy):
 
 def way_lengths(terrain: Terrain) -> NDArray[np.float64]:
     """Length of the way from the robot to every cell (rows, cols) [m], inf where there is none."""
-    lengths: NDArray[np.float64] = path_costs(np.where(np.isfinite(terrain.cost), 1.0, np.inf), terrain.cell)
-    return lengths * terrain.around.resolution
+    return lengths_in_cells(np.isfinite(terrain.cost), *terrain.cell) * terrain.around.resolution
 
 
 def _check(**options: float) -> None:
@@ -94,7 +93,7 @@ class NearestFrontierPolicy(RuledFrontierPolicy):
         lengths, pose = way_lengths(terrain), self.driver.pose
         costs = []
         for frontier in found:
-            leg = beginning_of_way(lengths, frontier.goal, terrain) - pose[:2]
+            leg = terrain.around.points(np.array([first_leg(lengths, *frontier.goal, LEG)]))[0] - pose[:2]
             turn = abs(math.remainder(math.atan2(leg[1], leg[0]) - pose[2], 2.0 * math.pi))
             size = min(frontier.size * terrain.around.resolution, 2.0)
             way = min(float(lengths[frontier.goal]), _BEYOND)
@@ -179,13 +178,13 @@ class DistanceAdvantagePolicy(RuledFrontierPolicy):
     def _costs(self, found: list[Frontier], terrain: Terrain) -> list[float]:
         every = max(1, round(_ADVANTAGE_CELL / terrain.around.resolution))
         coarse = _coarsened(np.isfinite(terrain.cost) & terrain.reachable, every)
-        side, cost = every * terrain.around.resolution, np.where(coarse, 1.0, np.inf)
+        side = every * terrain.around.resolution
         robot = _coarse_cell(coarse, terrain.cell, every)
         away = np.hypot(*(np.indices(coarse.shape) - np.array(robot)[:, None, None])) * side
         counted = coarse & (away <= self._radius)
         costs = []
         for frontier in found:
-            lengths = path_costs(cost, _coarse_cell(coarse, frontier.goal, every)) * side
+            lengths = lengths_in_cells(coarse, *_coarse_cell(coarse, frontier.goal, every)) * side
             near = lengths[counted]
             own = float(lengths[robot])
             reached = near[np.isfinite(near)]

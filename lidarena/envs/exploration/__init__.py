@@ -2,9 +2,10 @@
 
 from lidarena.envs.base_env import entry_point
 from lidarena.envs.exploration.env import BatchedExploration, ExplorationEnv
+from lidarena.envs.exploration.goal_choice.env import BatchedGoalChoice, GoalChoiceEnv
 from lidarena.envs.registration import Family, Registration
 
-__all__ = ["FAMILY", "BatchedExploration", "ExplorationEnv"]
+__all__ = ["FAMILY", "BatchedExploration", "BatchedGoalChoice", "ExplorationEnv", "GoalChoiceEnv"]
 
 EPISODE_STEPS = 1000
 """DA-SLAM's cap in training."""
@@ -12,6 +13,7 @@ _MAPS = {f"lidarena/Env{k}-v0": f"env{k}" for k in (1, 2, 3, 4)} | {"lidarena/Ex
 
 
 make_single = entry_point(ExplorationEnv)
+make_choice = entry_point(GoalChoiceEnv)
 
 FAMILY = Family(
     "exploration",
@@ -26,8 +28,8 @@ FAMILY = Family(
     }
     | {
         "lidarena/GoalChoice-v0": Registration(
-            "lidarena.agents.exploration.goal_choice_env:GoalChoiceEnv",
-            "lidarena.agents.exploration.goal_choice_batch:GoalChoiceBatch",
+            "lidarena.envs.exploration:make_choice",
+            "lidarena.envs.exploration.goal_choice.env:BatchedGoalChoice",
             agent="lidarena.agents.exploration.goal_choice_agent:GoalChoiceAgent",
         )
     },

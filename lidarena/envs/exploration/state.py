@@ -56,7 +56,7 @@ class ExplorationCore:
         self.worlds = worlds
         self.plan = np.zeros(worlds, np.int64)
         self.streams = np.zeros((worlds, 4), np.uint64)
-        self._near = np.zeros(worlds, np.bool_)
+        self._near, self._all = np.zeros(worlds, np.bool_), np.ones(worlds, np.bool_)
         self.sensors = empty_sensors(worlds, self.beam.beams)
 
     def _make_estimator(self) -> BatchEstimator:
@@ -77,7 +77,7 @@ class ExplorationCore:
         sensors.since_scan[world] = first_scan(self.options.decision_period, self.beam)
         sensors.path_length[world] = sensors.true_path_length[world] = 0.0
         self.estimator.start(world, plan, self.floors.coverage(plan).origin, self.physics.poses[world, 0], rng)
-        self._perceive(self.physics.poses, world, world + 1)
+        self._perceive(self.physics.poses, world, world + 1, self._all)
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
         if self.options.start != "random":
@@ -86,29 +86,32 @@ class ExplorationCore:
         x, y = starts[int(rng.integers(len(starts)))]
         return (float(x), float(y), float(rng.uniform(-np.pi, np.pi)))
 
-    def step(self, commands: NDArray[np.float64]) -> None:
-        """Drive every world for one decision period.
+    def step(self, commands: NDArray[np.float64], active: NDArray[np.bool_] | None = None) -> None:
+        """Drive worlds for one decision period.
 
         Args:
             commands: (worlds, 2) speed [m/s] and turn rate [rad/s].
+            active: (worlds,) the others stay as they are; None: all are.
         """
         before = self.physics.poses.copy()
         driven, period = commands[:, None, :], self.options.decision_period
         around, directions = self.bumper.ranges(self.sensors), self.bumper.directions
         may_touch(driven, period, self.robot.radius, around, directions, self._near)
-        self.physics.advance(driven, period, self._near)
-        self._perceive(before, 0, self.worlds)
+        self.physics.advance(driven, period, self._near, active)
+        self._perceive(before, 0, self.worlds, self._all if active is None else active)
 
-    def _perceive(self, before: NDArray[np.float64], first: int, last: int) -> None:
-        """Read the sensors of worlds first … last - 1 and run their SLAM."""
+    def _perceive(self, before: NDArray[np.float64], first: int, last: int, active: NDArray[np.bool_]) -> None:
+        """Read the sensors of those of worlds first … last - 1 that are active, and run their SLAM."""
         sensing = Sensing(
             before, self.physics.poses, self.plan, self.streams, self._noise, self.beam,
             self.robot.bumper, self.lidar.geometry, self.lidar.directions, self.sensors,
             self.options.decision_period,
         )  # fmt: skip
         estimator, counter = self.estimator, np.array([first])
-        on_threads(last - first, lambda thread: estimator.sense_and_estimate(sensing, Share(counter, last, thread)))
-        estimator.finish(sensing, first, last)
+        on_threads(
+            last - first, lambda thread: estimator.sense_and_estimate(sensing, Share(counter, last, thread, active))
+        )
+        estimator.finish(sensing, first, last, active)
         self.bumper.feel(self.physics.poses, self.plan, self.sensors, first, last)
 
     @property

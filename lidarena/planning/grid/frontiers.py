@@ -44,7 +44,7 @@ class Frontier:
 
 
 @kernel
-def _nearest_free(grid: NDArray[np.int8], row: int, col: int) -> tuple[int, int]:
+def nearest_free(grid: NDArray[np.int8], row: int, col: int) -> tuple[int, int]:
     """The free cell with the fewest 4-neighbour steps from (row, col), through anything; (-1, -1) if none is free."""
     rows, cols = grid.shape
     seen = np.zeros((rows, cols), np.bool_)
@@ -101,7 +101,7 @@ def _grow(
 
 
 @kernel
-def _flood(
+def flood_frontiers(
     grid: NDArray[np.int8], row: int, col: int
 ) -> tuple[NDArray[np.bool_], NDArray[np.int32], NDArray[np.int64]]:
     """Flood ``grid`` (rows, cols) from (row, col).
@@ -138,7 +138,7 @@ def _flood(
 
 
 @kernel
-def _measure(cells: NDArray[np.int32], row: int, col: int) -> tuple[float, float, float]:
+def measure_frontier(cells: NDArray[np.int32], row: int, col: int) -> tuple[float, float, float]:
     """Distance from (row, col) to the nearest of ``cells`` (n, 2), and their mean row and column."""
     nearest, rows, cols = np.inf, 0.0, 0.0
     for i in range(cells.shape[0]):
@@ -212,17 +212,17 @@ def find_frontiers(
         raise ConfigError(f"start cell {start} lies outside of the map of shape {grid.shape}")
     if not 0.0 < resolution < math.inf:
         raise ConfigError(f"a resolution of {resolution} m, allowed is a positive length")
-    row, col = _nearest_free(grid, *start)
+    row, col = nearest_free(grid, *start)
     if row < 0:
         return []
-    seen, cells, ends = _flood(grid, row, col)
+    seen, cells, ends = flood_frontiers(grid, row, col)
     targets = seen if goals is None else np.ascontiguousarray(goals, dtype=np.bool_)
     found = []
     for first, last in itertools.pairwise(ends):
         size = int(last - first)
         if size * resolution < min_frontier_size - 1e-9:
             continue
-        distance, *centre = _measure(cells[first:last], *start)
+        distance, *centre = measure_frontier(cells[first:last], *start)
         goal = nearest_cell(targets, *centre)
         if goal[0] < 0:
             return []

@@ -29,7 +29,7 @@ def _estimate(rows: int, cols: int, diagonal: bool) -> float:
 
 
 @kernel
-def _search(
+def search_grid(
     cost: NDArray[np.float64], start: int, goal: int, diagonal: bool, cheapest: float
 ) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
     """A* from ``start`` to ``goal`` (flat indices) over ``cost`` (rows, cols); ``goal`` = -1 explores everything.
@@ -74,7 +74,8 @@ def _search(
 
 
 @kernel
-def _trace(parent: NDArray[np.int64], goal: int, cols: int) -> NDArray[np.int64]:
+def trace(parent: NDArray[np.int64], goal: int, cols: int) -> NDArray[np.int64]:
+    """The cells (n, 2) on the way to ``goal``, the start first; ``parent`` is that of ``search_grid``."""
     n = 1
     cell = goal
     while parent[cell] >= 0:
@@ -123,10 +124,10 @@ def find_path(
     cols = grid.shape[1]
     source, target = start[0] * cols + start[1], goal[0] * cols + goal[1]
     cheapest = float(grid.min())
-    parent, reached = _search(grid, source, target, diagonal, cheapest if math.isfinite(cheapest) else 0.0)
+    parent, reached = search_grid(grid, source, target, diagonal, cheapest if math.isfinite(cheapest) else 0.0)
     if not math.isfinite(reached[target]):
         return np.empty((0, 2), np.int64)
-    path: NDArray[np.int64] = _trace(parent, target, cols)
+    path: NDArray[np.int64] = trace(parent, target, cols)
     return path
 
 
@@ -145,6 +146,6 @@ def path_costs(cost: ArrayLike, start: tuple[int, int], diagonal: bool = True) -
         ConfigError: as in :func:`find_path`.
     """
     grid = _checked(cost, start)
-    _, reached = _search(grid, start[0] * grid.shape[1] + start[1], -1, diagonal, 0.0)
+    _, reached = search_grid(grid, start[0] * grid.shape[1] + start[1], -1, diagonal, 0.0)
     costs: NDArray[np.float64] = reached.reshape(grid.shape)
     return costs

@@ -16,7 +16,7 @@ from lidarena.base.jit import kernel
 
 Decay = Literal["exponential", "linear"]
 
-_ESCAPE_BASE, _ESCAPE_SLOPE = 2.0, 20.0  # in units of Inflation.weight: any detour inside is worth a way out
+ESCAPE_BASE, ESCAPE_SLOPE = 2.0, 20.0  # in units of Inflation.weight: any detour inside is worth a way out
 
 
 @dataclass(frozen=True)
@@ -60,7 +60,7 @@ class Inflation:
 
 
 @kernel
-def _distance(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.float32]:
+def cell_distances(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.float32]:
     """Distance in cells of each cell of (rows, cols) to the nearest occupied one, at most ``reach`` + 1.
 
     Exact: along the rows first, then over the columns the least sum of squares (whole numbers, so that the result is
@@ -107,13 +107,13 @@ def clearance(
         between the centres less half a cell); 0 inside obstacles.
     """
     cells = math.ceil(reach / resolution)
-    distance = _distance(np.ascontiguousarray(occupancy, dtype=np.int8), occupied_from, cells)
+    distance = cell_distances(np.ascontiguousarray(occupancy, dtype=np.int8), occupied_from, cells)
     result: NDArray[np.float32] = np.maximum((distance - np.float32(0.5)) * np.float32(resolution), np.float32(0.0))
     return result
 
 
 @kernel
-def _costs(
+def cell_costs(
     occupancy: NDArray[np.int8],
     distance: NDArray[np.float32],
     lethal_radius: float,
@@ -156,7 +156,7 @@ def inflate(
     """
     if distance is None:
         distance = clearance(occupancy, resolution, inflation.occupied_from, inflation.radius + resolution)
-    cost: NDArray[np.float64] = _costs(
+    cost: NDArray[np.float64] = cell_costs(
         np.ascontiguousarray(occupancy, dtype=np.int8),
         distance,
         inflation.lethal_radius,
@@ -197,4 +197,4 @@ def open_start(
     near, gap = cost[window], distance[window].astype(np.float64)
     opened = np.isinf(near) & (occupancy[window] >= 0) & (occupancy[window] < inflation.occupied_from)
     depth = np.maximum(inflation.lethal_radius - gap, 0.0) / max(inflation.lethal_radius, 1e-9)
-    near[opened] = 1.0 + inflation.weight * (_ESCAPE_BASE + _ESCAPE_SLOPE * depth[opened])
+    near[opened] = 1.0 + inflation.weight * (ESCAPE_BASE + ESCAPE_SLOPE * depth[opened])

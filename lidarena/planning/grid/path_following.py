@@ -17,7 +17,10 @@ from lidarena.planning.grid.steering import Commands, loiter_gap, move, steer, t
 from lidarena.planning.grid.surroundings import Surroundings, gap_at, line_is_free
 
 _SHORTEST_CARROT = 0.4  # the lookahead point lies at least so far ahead on the path, in sight or not (m)
-_TOLERANCE = 0.03  # so much less clearance than planned is no reason to replan: poses jitter (m)
+TOLERANCE = 0.03
+"""So much less clearance than planned is no reason to replan: poses jitter [m]."""
+LOOKAHEAD, REACH, END_REACH = 1.5, 0.15, 0.25
+"""How far along the path commands are searched; how near to the path's point is there, and to the path's end [m]."""
 _SHORTEST_LOOK = 0.2  # nearer to the robot a path is not checked (m)
 
 
@@ -86,9 +89,9 @@ class PathFollower:
     least_margin: float = 0.15
     last_margin: float = 0.12
     preferred: float = 0.4
-    lookahead: float = 1.5
-    reach: float = 0.15
-    end_reach: float = 0.25
+    lookahead: float = LOOKAHEAD
+    reach: float = REACH
+    end_reach: float = END_REACH
     _queue: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64), repr=False)
     _kept: float = field(default=math.inf, repr=False)  # clearance that the planned commands were meant to keep
     _turning: int | None = field(default=None, repr=False)
@@ -163,7 +166,7 @@ class PathFollower:
         at = np.asarray(pose, np.float64)
         here = gap_at(around.gap, around.closed, around.frame, at[0], at[1])
         least = tightest(around.gap, around.closed, around.frame, at, self.commands.moves, self._queue[:horizon])
-        return bool(least >= min(self._kept - _TOLERANCE, max(here, 0.0) - 0.01))
+        return bool(least >= min(self._kept - TOLERANCE, max(here, 0.0) - 0.01))
 
     def next(self) -> int | None:
         """Take the next planned command; None if there is none."""
@@ -203,7 +206,7 @@ class PathFollower:
 
 
 @kernel
-def _is_blocked(
+def path_is_blocked(
     path: NDArray[np.float64],
     position: NDArray[np.float64],
     gap: NDArray[np.float32],
@@ -211,6 +214,7 @@ def _is_blocked(
     frame: NDArray[np.float64],
     margin: float,
 ) -> bool:
+    """The kernel of :func:`blocked_ahead`; gap and closed (rows, cols), frame (3,), position (2,) or longer."""
     nearest = _nearest_point(path, position)
     width, height = gap.shape[1] * frame[2], gap.shape[0] * frame[2]
     for i in range(nearest, path.shape[0]):
@@ -234,7 +238,7 @@ def blocked_ahead(path: NDArray[np.float64], pose: NDArray[np.float64], around: 
         margin: Least clearance (m).
     """
     at = np.asarray(pose, np.float64)
-    return bool(_is_blocked(path, at, around.gap, around.closed, around.frame, margin))
+    return bool(path_is_blocked(path, at, around.gap, around.closed, around.frame, margin))
 
 
 @kernel

@@ -23,6 +23,8 @@ from lidarena.planning.grid.surroundings import Surroundings, gap_at
 _BIN = 0.07  # side of a position bin (m)
 _TURN_EDGE, _DRIVE_EDGE = 0.18, 0.1  # what one edge of the search turns (rad) or drives (m), at least one command
 _TWO_PI = 2.0 * math.pi
+WEIGHT, WINDOW = 10.0, 2.5
+"""A second with no clearance at all counts as 1 + the first seconds; half the side of the square searched [m]."""
 
 
 class Commands(NamedTuple):
@@ -286,9 +288,9 @@ def steer(
     commands: Commands,
     margin: float = 0.17,
     preferred: float = 0.4,
-    weight: float = 10.0,
+    weight: float = WEIGHT,
     reach: float = 0.15,
-    window: float = 2.5,
+    window: float = WINDOW,
     most_states: int = 6_000,
 ) -> NDArray[np.int64]:
     """Return the quickest sequence of commands that leads near a target, through places with clearance.

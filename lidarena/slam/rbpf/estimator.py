@@ -6,7 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf, take_next
+from lidarena.base.jit import leaf
 from lidarena.base.keyword_checks import check_range
 from lidarena.slam.estimator import BatchEstimator, EstimatorSettings, Floats, map_arrays
 from lidarena.slam.occupancy import OccupancyMaps
@@ -15,7 +15,7 @@ from lidarena.slam.rbpf.likelihood_field import Fields, tiles_in_use
 from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.rbpf.scan_points import points_for
-from lidarena.slam.readings import ScanGeometry, Share, reading_of
+from lidarena.slam.readings import ScanGeometry, Share, next_world, reading_of
 from lidarena.world.sensors import Sensing, sense
 
 MOST_PARTICLES = 1000
@@ -98,10 +98,10 @@ def sense_and_filter(
     scratch: Scratch,
 ) -> None:
     """Read the sensors and run the particle filter, world after world."""
-    w = take_next(share.counter)
+    w = next_world(share)
     while w < share.last:
         sense(w, sensing)
         step_filter(
             w, reading_of(w, sensing), geometry, parameters, sensing.streams[w], state, maps, scratch, share.thread
         )
-        w = take_next(share.counter)
+        w = next_world(share)

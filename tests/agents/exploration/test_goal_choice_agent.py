@@ -4,7 +4,6 @@ import numpy as np
 
 from lidarena import agents
 from lidarena.agents.exploration.goal_choice_agent import GoalChoiceAgent
-from lidarena.agents.exploration.goal_choice_env import GOAL_CHOICE_ID
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
@@ -15,7 +14,7 @@ MAZE = "maze:5?width=5&height=5"
 
 def test_an_agent_is_trained_saved_loaded_and_driven(tmp_path: Path) -> None:
     content = {
-        "env": {"id": GOAL_CHOICE_ID, "keywords": {"map": MAZE, "max_episode_steps": 150, "particles": 5}},
+        "env": {"id": "lidarena/GoalChoice-v0", "keywords": {"map": MAZE, "particles": 5}},
         "total_steps": 16,
         "num_envs": 2,
         "ppo": {"n_steps": 8, "batch_size": 16, "n_epochs": 1},

@@ -1,0 +1,172 @@
+"""Following a path with a handful of commands, compiled: what ``path_following.PathFollower`` does, for many worlds."""
+
+import math
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.jit import kernel
+from lidarena.planning.driving.state import Drive, DriverSettings, KnownGround, Perceptions
+from lidarena.planning.grid.path_following import (
+    END_REACH,
+    LOOKAHEAD,
+    REACH,
+    TOLERANCE,
+    lookahead_point,
+    path_is_blocked,
+)
+from lidarena.planning.grid.steering import WEIGHT, WINDOW, loiter_gap, move, search_commands, tightest
+from lidarena.planning.grid.surroundings import gap_at
+
+_HORIZON = 8  # commands that are checked ahead
+_MOST_STATES = 6000.0
+
+
+@kernel
+def _gap(ground: KnownGround, w: int) -> NDArray[np.float32]:
+    rows, columns = ground.extent[w, 2], ground.extent[w, 3]
+    return ground.gap[w, : rows * columns].reshape(rows, columns)
+
+
+@kernel
+def _closed(ground: KnownGround, w: int) -> NDArray[np.bool_]:
+    rows, columns = ground.extent[w, 2], ground.extent[w, 3]
+    return ground.closed[w, : rows * columns].reshape(rows, columns)
+
+
+@kernel
+def _queue(w: int, drive: Drive) -> NDArray[np.int64]:
+    return drive.queue[w, drive.queue_span[w, 0] : drive.queue_span[w, 1]]
+
+
+@kernel
+def clear_queue(w: int, drive: Drive) -> None:
+    """Forget the commands that are still to come."""
+    drive.queue_span[w, 0] = drive.queue_span[w, 1] = 0
+
+
+@kernel
+def has_queue(w: int, drive: Drive) -> bool:
+    """Whether commands are still to come."""
+    return bool(drive.queue_span[w, 1] > drive.queue_span[w, 0])
+
+
+@kernel
+def is_clear(
+    w: int, pose: NDArray[np.float64], ground: KnownGround, settings: DriverSettings, drive: Drive, n: int
+) -> bool:
+    """Whether the next n planned commands keep the clearance that they were planned with, or that which there is."""
+    gap, closed, frame = _gap(ground, w), _closed(ground, w), ground.frame[w]
+    here = gap_at(gap, closed, frame, pose[0], pose[1])
+    least = tightest(gap, closed, frame, pose, settings.commands.moves, _queue(w, drive)[:n])
+    return bool(least >= min(drive.kept[w] - TOLERANCE, max(here, 0.0) - 0.01))
+
+
+@kernel
+def stays_clear(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
+    """Whether the next planned commands keep clear of what is near."""
+    return is_clear(w, senses.poses[w], drive.near, settings, drive, _HORIZON)
+
+
+@kernel
+def _room(w: int, command: int, pose: NDArray[np.float64], ground: KnownGround, settings: DriverSettings) -> float:
+    velocity = settings.commands.velocities[command]
+    return loiter_gap(_gap(ground, w), _closed(ground, w), ground.frame[w], pose, velocity)
+
+
+@kernel
+def can_loiter(w: int, pose: NDArray[np.float64], ground: KnownGround, settings: DriverSettings) -> bool:
+    """Whether there is room to drive a circle, in narrow places."""
+    most = -np.inf
+    for k in range(settings.commands.velocities.shape[0]):
+        if settings.commands.velocities[k, 1] != 0.0:
+            most = max(most, _room(w, k, pose, ground, settings))
+    return bool(most >= settings.margins[1])
+
+
+@kernel
+def loiter(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> int:
+    """The turning command that keeps the robot safe where it is; see ``PathFollower.loiter``."""
+    velocities, pose, margins = settings.commands.velocities, senses.poses[w], settings.margins
+    if drive.turning[w] >= 0 and min(_room(w, drive.turning[w], pose, drive.near, settings), margins[0]) >= margins[1]:
+        return int(drive.turning[w])
+    best, most = -1, -np.inf
+    for k in range(velocities.shape[0]):
+        if velocities[k, 1] == 0.0:
+            continue
+        room = min(_room(w, k, pose, drive.near, settings), margins[0])
+        sharper = best >= 0 and velocities[k, 1] > velocities[best, 1]
+        if room > most or (room == most and sharper):
+            best, most = k, room
+    drive.turning[w] = best
+    return best
+
+
+@kernel
+def _leads_to(
+    w: int, path: NDArray[np.float64], pose: NDArray[np.float64], settings: DriverSettings, drive: Drive
+) -> bool:
+    """Whether the planned commands end where they would be planned to now, as they do while the robot turns."""
+    ground, queue = drive.ground, _queue(w, drive)
+    gap, closed, frame = _gap(ground, w), _closed(ground, w), ground.frame[w]
+    index = lookahead_point(path, pose, gap, closed, frame, LOOKAHEAD, settings.margins[0])
+    here = pose.copy()
+    for command in queue:
+        move(here, settings.commands.moves[command])
+    near = math.hypot(here[0] - path[index, 0], here[1] - path[index, 1]) <= REACH
+    return near and is_clear(w, pose, ground, settings, drive, len(queue))
+
+
+@kernel
+def _towards(
+    w: int,
+    path: NDArray[np.float64],
+    pose: NDArray[np.float64],
+    settings: DriverSettings,
+    drive: Drive,
+    margin: float,
+    lookahead: float,
+) -> bool:
+    """Search commands along a path and queue them; whether there are any."""
+    ground = drive.ground
+    gap, closed, frame = _gap(ground, w), _closed(ground, w), ground.frame[w]
+    index = lookahead_point(path, pose, gap, closed, frame, lookahead, margin)
+    reach = END_REACH if index == len(path) - 1 else REACH
+    here = gap_at(gap, closed, frame, pose[0], pose[1])
+    margins = np.array([min(margin, max(here, 0.0) - 0.01), settings.margins[3], WEIGHT])
+    limits = np.array([reach, WINDOW, _MOST_STATES])
+    found = search_commands(gap, closed, frame, pose, path[index], settings.commands, margins, limits)
+    count = min(len(found), drive.queue.shape[1])
+    if count == 0:
+        return False
+    drive.queue[w, :count] = found[:count]
+    drive.queue_span[w, 0], drive.queue_span[w, 1], drive.kept[w] = 0, count, margin
+    return True
+
+
+@kernel
+def plan_commands(
+    w: int, path: NDArray[np.float64], senses: Perceptions, settings: DriverSettings, drive: Drive
+) -> bool:
+    """Queue commands along a path (n, 2), n >= 1; what was queued before stays if it serves or nothing is found."""
+    pose, margins = senses.poses[w], settings.margins
+    if has_queue(w, drive) and _leads_to(w, path, pose, settings, drive):
+        return True
+    found = _towards(w, path, pose, settings, drive, margins[0], LOOKAHEAD)
+    found = found or _towards(w, path, pose, settings, drive, margins[1], LOOKAHEAD)
+    found = found or _towards(w, path, pose, settings, drive, margins[1], 2.0 * LOOKAHEAD)
+    found = found or _towards(w, path, pose, settings, drive, margins[1], 0.5 * LOOKAHEAD)
+    if not found and not can_loiter(w, pose, drive.ground, settings):
+        found = _towards(w, path, pose, settings, drive, margins[2], 0.5 * LOOKAHEAD)
+    return found
+
+
+@kernel
+def is_path_blocked(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
+    """Whether there is no path, or what is near blocks it."""
+    count = drive.path_points[w]
+    if count == 0:
+        return True
+    near = drive.near
+    gap, closed, path = _gap(near, w), _closed(near, w), drive.path[w, :count]
+    return path_is_blocked(path, senses.poses[w], gap, closed, near.frame[w], settings.margins[1])

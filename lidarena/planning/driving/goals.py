@@ -1,0 +1,139 @@
+"""Keeping account of the goals of many worlds: which is pursued, since when it comes no nearer, which are given up."""
+
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.jit import kernel
+
+SAME_GOAL = 0.25
+"""Goals nearer to each other than this, in x and in y, are one [m]: explore_lite's five cells."""
+TRIES = 3
+"""A goal for which no commands are found at so many planning instants is given up."""
+_PROGRESS = 0.05  # what counts as having come nearer [m]
+_MOST = 256  # goals that are remembered; the oldest are forgotten
+
+
+class GoalAccounts(NamedTuple):
+    """The accounts of W episodes.
+
+    Attributes:
+        pursued: (W, 2) the goal that is being driven to [m].
+        has_pursued: (W,) bool.
+        given_up: (W, goals, 2) that are not tried again, in turn.
+        given_up_count: (W,) how many there were.
+        failures: (W, goals, 2) for which no commands were found, in turn.
+        failure_count: (W,) how many there were.
+        arrived_at: (W,) step of the arrival, -1 before it.
+        progress_at: (W,) step at which it last came nearer.
+        shortest: (W,) remaining way then [m].
+    """
+
+    pursued: NDArray[np.float64]
+    has_pursued: NDArray[np.bool_]
+    given_up: NDArray[np.float64]
+    given_up_count: NDArray[np.int64]
+    failures: NDArray[np.float64]
+    failure_count: NDArray[np.int64]
+    arrived_at: NDArray[np.int64]
+    progress_at: NDArray[np.int64]
+    shortest: NDArray[np.float64]
+
+
+def empty_accounts(worlds: int) -> GoalAccounts:
+    """Allocate the accounts."""
+    return GoalAccounts(
+        np.zeros((worlds, 2)),
+        np.zeros(worlds, np.bool_),
+        np.zeros((worlds, _MOST, 2)),
+        np.zeros(worlds, np.int64),
+        np.zeros((worlds, _MOST, 2)),
+        np.zeros(worlds, np.int64),
+        np.full(worlds, -1, np.int64),
+        np.zeros(worlds, np.int64),
+        np.full(worlds, np.inf),
+    )
+
+
+def open_accounts(accounts: GoalAccounts, world: int) -> None:
+    """Begin an episode in one world."""
+    accounts.has_pursued[world] = False
+    accounts.given_up_count[world] = accounts.failure_count[world] = accounts.progress_at[world] = 0
+    accounts.arrived_at[world], accounts.shortest[world] = -1, np.inf
+
+
+def arrays_of(accounts: GoalAccounts) -> dict[str, NDArray[Any]]:
+    """Everything that later steps depend on, by name."""
+    return accounts._asdict()
+
+
+@kernel
+def _is_same(x: float, y: float, goal: NDArray[np.float64]) -> bool:
+    return bool(abs(x - goal[0]) < SAME_GOAL and abs(y - goal[1]) < SAME_GOAL)
+
+
+@kernel
+def is_given_up(w: int, x: float, y: float, accounts: GoalAccounts) -> bool:
+    """Whether a goal has been given up."""
+    for i in range(min(accounts.given_up_count[w], _MOST)):  # noqa: SIM110 - numba compiles no generators
+        if _is_same(x, y, accounts.given_up[w, i]):
+            return True
+    return False
+
+
+@kernel
+def give_up(w: int, x: float, y: float, accounts: GoalAccounts) -> None:
+    """Never try a goal again."""
+    slot = accounts.given_up_count[w] % _MOST
+    accounts.given_up[w, slot, 0], accounts.given_up[w, slot, 1] = x, y
+    accounts.given_up_count[w] += 1
+
+
+@kernel
+def pursue(w: int, x: float, y: float, step: int, accounts: GoalAccounts) -> None:
+    """Note that a goal is being driven to; one that is the same as before keeps its account."""
+    if not accounts.has_pursued[w] or not _is_same(x, y, accounts.pursued[w]):
+        accounts.pursued[w, 0], accounts.pursued[w, 1], accounts.has_pursued[w] = x, y, True
+        accounts.arrived_at[w], accounts.progress_at[w], accounts.shortest[w] = -1, step, np.inf
+
+
+@kernel
+def watch(
+    w: int, remaining: float, arrived: bool, step: int, timeout: int, patience: int, accounts: GoalAccounts
+) -> None:
+    """Note how the pursued goal comes nearer, and give it up if it does not, or was reached without effect.
+
+    Args:
+        w: World.
+        remaining: Length of the path that remains [m].
+        arrived: Whether the robot is there.
+        step: Now.
+        timeout: Steps without coming nearer.
+        patience: Steps after arrival.
+        accounts: Of all worlds.
+    """
+    if not accounts.has_pursued[w]:
+        return
+    if remaining < accounts.shortest[w] - _PROGRESS:
+        accounts.shortest[w], accounts.progress_at[w] = remaining, step
+    if arrived and accounts.arrived_at[w] < 0:
+        accounts.arrived_at[w] = step
+    in_vain = accounts.arrived_at[w] >= 0 and step - accounts.arrived_at[w] >= patience
+    if in_vain or step - accounts.progress_at[w] >= timeout:
+        give_up(w, accounts.pursued[w, 0], accounts.pursued[w, 1], accounts)
+
+
+@kernel
+def fail(w: int, x: float, y: float, for_good: bool, accounts: GoalAccounts) -> bool:
+    """Note that no commands were found for a goal; whether it is given up now."""
+    slot = accounts.failure_count[w] % _MOST
+    accounts.failures[w, slot, 0], accounts.failures[w, slot, 1] = x, y
+    accounts.failure_count[w] += 1
+    tries = 0
+    for i in range(min(accounts.failure_count[w], _MOST)):
+        tries += _is_same(x, y, accounts.failures[w, i])
+    if for_good or tries >= TRIES:
+        give_up(w, x, y, accounts)
+        return True
+    return False

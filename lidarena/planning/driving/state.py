@@ -1,0 +1,175 @@
+"""What drivers of many worlds know and plan, as arrays that lead with (worlds,)."""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.planning.grid.steering import Commands
+
+NEARBY, NEAR_HITS, REMEMBERED = 1.2, 0.6, 2.0
+"""Half the side of the window that is looked at before every command [m]; hits so near [m] are kept so long [s]."""
+LETHAL, INFLATED, ESCAPE, ARRIVAL = 0.22, 0.6, 0.6, 0.3
+"""Paths keep off walls by the first, where they can by the second; how far around a robot in the lethal zone cells are
+opened; distance to the goal that counts as there [m]."""
+_MARGINS = (0.2, 0.15, 0.12, 0.4)
+_LONGEST_PATH, _LONGEST_QUEUE = 4096, 1024
+
+
+class DriverSettings(NamedTuple):
+    """How robots drive.
+
+    Attributes:
+        commands: What a robot can do.
+        angles: (beams,) of its lidar [rad].
+        max_range: Of its lidar [m].
+        extra: How much more room than DA-SLAM's robot it needs [m].
+        keep: Commands that end nearer than this to what a beam hit, and nearer than before, are not given [m].
+        margins: (4,) clearance that planned poses keep; that in narrow places; that to get out of a place where the
+            robot cannot turn round; that which is kept where there is room [m].
+        resolution: Side of a map cell [m].
+    """
+
+    commands: Commands
+    angles: NDArray[np.float64]
+    max_range: float
+    extra: float
+    keep: float
+    margins: NDArray[np.float64]
+    resolution: float
+
+
+class Perceptions(NamedTuple):
+    """What the drivers of W worlds are told.
+
+    Attributes:
+        maps: (W, rows, columns) int8, -1 unknown, 0 free .. 100 occupied.
+        origin: (W, 2) x, y of the maps' lower-left corners [m].
+        poses: (W, 3) believed.
+        scans: (W, beams) float32 ranges [m].
+    """
+
+    maps: NDArray[np.int8]
+    origin: NDArray[np.float64]
+    poses: NDArray[np.float64]
+    scans: NDArray[np.float32]
+
+
+class KnownGround(NamedTuple):
+    """Grids of W worlds, each in a row of its own of which ``extent`` says how much is used.
+
+    Attributes:
+        occupancy: (W, cells) int8 with the hits of late.
+        gap: (W, cells) float32 clearances [m].
+        closed: (W, cells) bool, cells where no robot's centre must be.
+        cost: (W, cells) of entering a cell, inf where blocked.
+        reachable: (W, cells) bool, cells that can be reached from the robot.
+        extent: (W, 4) first row and column in the map, rows, columns; no rows: nothing is known.
+        frame: (W, 3) x, y of the corner, side of a cell [m].
+        cell: (W, 2) row and column of the robot in it.
+    """
+
+    occupancy: NDArray[np.int8]
+    gap: NDArray[np.float32]
+    closed: NDArray[np.bool_]
+    cost: NDArray[np.float64]
+    reachable: NDArray[np.bool_]
+    extent: NDArray[np.int64]
+    frame: NDArray[np.float64]
+    cell: NDArray[np.int64]
+
+
+class Drive(NamedTuple):
+    """What W drivers remember and plan.
+
+    Attributes:
+        hits: (W, H, beams, 2) where beams hit something nearby in the last H steps, in turn [m].
+        hit_counts: (W, H) how many.
+        newest: (W,) which of the H was written last.
+        near: The window around the robot.
+        ground: All that is known, as of the last survey.
+        goal: (W, 2) [m].
+        has_goal: (W,) bool.
+        path: (W, points, 2) [m].
+        path_points: (W,) how many are used.
+        queue: (W, commands) that are planned.
+        queue_span: (W, 2) the first that is to come, and the end.
+        kept: (W,) clearance that they were meant to keep [m].
+        turning: (W,) the command with which the robot loiters, -1 for none.
+    """
+
+    hits: NDArray[np.float64]
+    hit_counts: NDArray[np.int64]
+    newest: NDArray[np.int64]
+    near: KnownGround
+    ground: KnownGround
+    goal: NDArray[np.float64]
+    has_goal: NDArray[np.bool_]
+    path: NDArray[np.float64]
+    path_points: NDArray[np.int64]
+    queue: NDArray[np.int64]
+    queue_span: NDArray[np.int64]
+    kept: NDArray[np.float64]
+    turning: NDArray[np.int64]
+
+
+def make_settings(
+    commands: Commands, angles: NDArray[np.float64], max_range: float, extra: float, keep: float, resolution: float
+) -> DriverSettings:
+    """Return the settings of a robot that needs ``extra`` more room than DA-SLAM's; see ``DriverSettings``."""
+    beams = np.ascontiguousarray(angles, np.float64)
+    return DriverSettings(commands, beams, float(max_range), extra, keep, np.array(_MARGINS) + extra, resolution)
+
+
+def empty_drive(worlds: int, rows: int, columns: int, settings: DriverSettings) -> Drive:
+    """Allocate drivers for maps of so many cells."""
+    remembered = max(1, round(REMEMBERED / settings.commands.period))
+    beams = len(settings.angles)
+    side = 2 * math.ceil((NEARBY + settings.extra) / settings.resolution) + 1
+    return Drive(
+        np.zeros((worlds, remembered, beams, 2)),
+        np.zeros((worlds, remembered), np.int64),
+        np.zeros(worlds, np.int64),
+        _empty_ground(worlds, side * side),
+        _empty_ground(worlds, rows * columns),
+        np.zeros((worlds, 2)),
+        np.zeros(worlds, np.bool_),
+        np.zeros((worlds, _LONGEST_PATH, 2)),
+        np.zeros(worlds, np.int64),
+        np.zeros((worlds, _LONGEST_QUEUE), np.int64),
+        np.zeros((worlds, 2), np.int64),
+        np.full(worlds, np.inf),
+        np.full(worlds, -1, np.int64),
+    )
+
+
+def _empty_ground(worlds: int, cells: int) -> KnownGround:
+    return KnownGround(
+        np.zeros((worlds, cells), np.int8),
+        np.zeros((worlds, cells), np.float32),
+        np.zeros((worlds, cells), np.bool_),
+        np.zeros((worlds, cells)),
+        np.zeros((worlds, cells), np.bool_),
+        np.zeros((worlds, 4), np.int64),
+        np.zeros((worlds, 3)),
+        np.zeros((worlds, 2), np.int64),
+    )
+
+
+def forget(drive: Drive, world: int) -> None:
+    """Begin anew in one world."""
+    drive.hit_counts[world] = drive.newest[world] = 0
+    drive.has_goal[world] = False
+    drive.path_points[world], drive.queue_span[world] = 0, 0
+    drive.kept[world], drive.turning[world] = np.inf, -1
+    drive.ground.extent[world] = 0
+
+
+def arrays_of(drive: Drive) -> dict[str, NDArray[Any]]:
+    """Everything that later steps depend on, by name."""
+    grounds = {"near": drive.near, "ground": drive.ground}
+    own = {name: array for name, array in drive._asdict().items() if name not in grounds}
+    for name, ground in grounds.items():
+        own |= {f"{name}.{part}": array for part, array in ground._asdict().items()}
+    return own

@@ -1,0 +1,32 @@
+from hypothesis import given
+from hypothesis import strategies as st
+
+from lidarena.baselines.exploration.goal_tracker import GoalBlacklist
+from lidarena.planning.driving.goals import empty_accounts, fail, is_given_up, open_accounts, pursue, watch
+
+PLACE = st.sampled_from([(0.0, 0.0), (0.2, 0.1), (1.0, 0.0), (1.1, 0.2), (3.0, -2.0)])
+DEED = st.one_of(
+    st.tuples(st.just("pursue"), PLACE, st.just(0.0), st.just(False)),
+    st.tuples(st.just("watch"), PLACE, st.floats(0.0, 5.0), st.booleans()),
+    st.tuples(st.just("fail"), PLACE, st.just(0.0), st.booleans()),
+)
+
+
+@given(st.lists(DEED, max_size=30))
+def test_the_accounts_are_those_of_the_plain_blacklist(
+    deeds: list[tuple[str, tuple[float, float], float, bool]],
+) -> None:
+    plain, accounts = GoalBlacklist(timeout=12, patience=4), empty_accounts(2)
+    open_accounts(accounts, 1)
+    for step, (deed, goal, remaining, flag) in enumerate(deeds):
+        if deed == "pursue":
+            plain.pursue(goal, step)
+            pursue(1, *goal, step, accounts)
+        elif deed == "watch":
+            plain.watch(remaining, flag, step)
+            watch(1, remaining, flag, step, 12, 4, accounts)
+        else:
+            assert plain.fail(goal, flag) == fail(1, *goal, flag, accounts)
+        for place in ((0.0, 0.0), (1.0, 0.0), (3.0, -2.0)):
+            assert plain.is_given_up(place) == is_given_up(1, *place, accounts)
+    assert not is_given_up(0, 0.0, 0.0, accounts)
