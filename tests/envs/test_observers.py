@@ -120,7 +120,7 @@ def test_an_observer_is_used_as_it_is() -> None:
     assert env.observation_space is READY.space
 
 
-@pytest.mark.parametrize("kind", ["da_slam", "sectors", "frontier_histogram"])
+@pytest.mark.parametrize("kind", ["da_slam", "sectors", "frontier_histogram", "frontier_arcs"])
 def test_with_the_entropy_only_the_last_entry_is_another(kind: str) -> None:
     plain, entropy = (gym.make("lidarena/Env1-v0", observation=name) for name in (kind, f"{kind}_entropy"))
     assert plain.observation_space == entropy.observation_space

@@ -22,7 +22,9 @@ _SPEED, _TURN_RATE = 0.5, 1.0
 _STEERED = np.array([(1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.5), (1.0, -0.5)])
 _SLACK = 0.03
 """Room beside the collision distance that commands leave, three sigma of DA-SLAM's lidar or of another one's [m]."""
-_KNOWN = ("da_slam", "sectors", "frontier_histogram", "map")
+_NEARNESS = ("frontier_histogram", "frontier_arcs")
+"""Observations that begin with how near the nearest hit in each sector is."""
+_KNOWN = ("da_slam", "sectors", *_NEARNESS, "map")
 """Observations that hold beams."""
 _PIECE = 0.1
 """Commands are compared with hits at points of their way so far apart [m]."""
@@ -114,7 +116,7 @@ class Robot:
         numbers = np.asarray(observation, np.float64)
         if self._observation == "sectors":
             return numbers[:SECTORS], sector_angles()
-        if self._observation == "frontier_histogram":  # nearness; rounded, as a free beam is to have the range 1
+        if self._observation in _NEARNESS:  # rounded, as a free beam is to have the range 1
             touch = self.spec.contact_distance / self._lidar.max_range
             return np.round(touch / numbers[:SECTORS], 5), sector_angles()
         return numbers[: len(FRONT_ANGLES)], np.array(FRONT_ANGLES)

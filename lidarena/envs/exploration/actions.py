@@ -24,6 +24,12 @@ def discrete_commands(robot: RobotSpec) -> NDArray[np.float64]:
     return commands
 
 
+def turning_radius(robot: RobotSpec) -> float:
+    """Radius of the circle on which a robot drives that keeps turning left, or right [m]."""
+    speed, rate = discrete_commands(robot)[NAMES.index("left")]
+    return float(speed / rate)
+
+
 def action_space(kind: str) -> gym.Space[Any]:
     """``Discrete(3)``, or ``Box(-1, 1, (2,))`` of speed and turn rate."""
     if kind == "discrete":

@@ -61,8 +61,19 @@ class ExplorationEnv(SingleWorld):
     | 72–73 | (1 + cos) / 2, (1 + sin) / 2 of the mean direction of these; 0.5, 0.5 where there is none |
     | 74–75 | as 5 and 6 above |
 
-    ``"da_slam_entropy"``, ``"sectors_entropy"`` and ``"frontier_histogram_entropy"`` hold the entropy of the particles'
-    weights / ln N in place of the completeness, as DA-SLAM's agent for uncertainty sees it.
+    ``observation="frontier_arcs"``, ``Box(0, 1, (112,), float32)``, tells where a robot that can neither stop nor
+    reverse still has room to turn:
+
+    | Num    | Observation |
+    |--------|-------------|
+    | 0–35   | as in ``"frontier_histogram"`` |
+    | 36–71  | to how much of the frontier each sector leads on ways that keep clear of things, see ``clear_ways`` |
+    | 72–74  | (1 + cos) / 2, (1 + sin) / 2 of the direction of the nearest, and how near it is |
+    | 75–109 | how far the robot could drive and turn before it touches what it sees, see ``free_arcs`` |
+    | 110–111 | as 5 and 6 above |
+
+    The names with ``"_entropy"`` behind (``"da_slam_entropy"``, …) hold the entropy of the particles' weights / ln N in
+    place of the completeness, as DA-SLAM's agent for uncertainty sees it.
 
     ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``. Or an
     observer of one's own, see ``lidarena.envs.observers``.

@@ -9,6 +9,9 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.jit import leaf
+from lidarena.envs.exploration.actions import turning_radius
+from lidarena.envs.exploration.clear_ways import WAY_EXTRAS, clear_ways
+from lidarena.envs.exploration.free_arcs import ARCS, free_arcs
 from lidarena.envs.exploration.frontier_directions import frontier_histogram, mean_direction
 from lidarena.envs.exploration.scan_sectors import FRONT_ANGLES, SECTORS, ScanSectors, front_beams
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
@@ -103,6 +106,25 @@ class FrontierHistogramObserver(SectorObserver):
         return np.concatenate([near, edge, mean_direction(edge)], axis=1)
 
 
+class FrontierArcsObserver(SectorObserver):
+    """What a robot must know that can neither stop nor drive backwards: where it still has room to turn.
+
+    How near the nearest hit in each sector is, as in ``FrontierHistogramObserver``; which way the map's edge lies on
+    ways that keep clear of walls and furniture, see ``clear_ways``; and how far the robot could drive and turn before
+    it touches what it sees, see ``free_arcs``.
+    """
+
+    looks = 2 * SECTORS + WAY_EXTRAS + ARCS
+
+    def _look(self, core: ExplorationCore) -> NDArray[np.float32]:
+        scans, touch = core.sensors.scans[:, 0], core.robot.contact_distance
+        near = np.float32(touch) / np.maximum(self._sectors.nearest_hits(scans), np.float32(touch))
+        radius = turning_radius(core.robot)
+        ways = clear_ways(core.maps.occupancy, core.maps.origin, core.estimate, SECTORS, (touch, radius), RESOLUTION)
+        arcs = free_arcs(scans, core.lidar.directions, core.beam.max_range, radius, touch)
+        return np.concatenate([near, ways, arcs], axis=1)
+
+
 class MapObserver:
     """A dictionary: ``map``, ``scan``, ``covariance``, ``state``.
 
@@ -144,6 +166,7 @@ FLAT: dict[str, type[DaSlamObserver]] = {
     "da_slam": DaSlamObserver,
     "sectors": SectorObserver,
     "frontier_histogram": FrontierHistogramObserver,
+    "frontier_arcs": FrontierArcsObserver,
 }
 ENTROPY = "_entropy"
 """End of the names of the same observations with the entropy in the last place."""

@@ -27,6 +27,8 @@ OBSERVATIONS = (
     "sectors_entropy",
     "frontier_histogram",
     "frontier_histogram_entropy",
+    "frontier_arcs",
+    "frontier_arcs_entropy",
     "map",
 )
 _RENAMED_OBSERVATIONS = {"compass": "frontier_histogram"}
@@ -87,10 +89,11 @@ class ExplorationOptions:
             ``uncertainty``, ``collision``; ``{"preset": name, term: weight}`` to change some weights of one of the
             three; a function of a ``Step``, or ``"module:function"``; see ``lidarena.envs.rewards``.
         observation: ``"da_slam"`` (DA-SLAM's), ``"sectors"`` (the same with the nearest hit in 36 sectors for its
-            five beams), ``"frontier_histogram"`` (that, and which way the edge of the known map lies), each of them
-            with ``"_entropy"`` behind its name for the entropy of the particles' weights in place of the completeness,
-            or ``"map"`` (a dictionary with an egocentric picture of the map); or one's own, see
-            ``lidarena.envs.observers``.
+            five beams), ``"frontier_histogram"`` (that, and which way the edge of the known map lies),
+            ``"frontier_arcs"`` (which way on ways that keep clear of things, and how far the robot can drive and turn
+            before it touches one), each of them with ``"_entropy"`` behind its name for the entropy of the particles'
+            weights in place of the completeness, or ``"map"`` (a dictionary with an egocentric picture of the map); or
+            one's own, see ``lidarena.envs.observers``.
         action: ``"discrete"`` (DA-SLAM's three) or ``"continuous"``.
         slam: ``"rbpf"`` runs the particle filter, ``"odometry"`` maps with the pose that the odometry adds up to,
             ``"truth"`` with the true one. Or an estimator of one's own: ``"module:callable"``, a class or function (see

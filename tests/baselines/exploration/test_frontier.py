@@ -237,7 +237,7 @@ def test_options_out_of_range_are_refused(option, value):
 
 def test_frontier_explores_with_any_observation() -> None:
     known = []
-    for observation in ("da_slam", "sectors", "frontier_histogram", "map"):
+    for observation in ("da_slam", "sectors", "frontier_histogram", "frontier_arcs", "map"):
         env = gym.make("lidarena/Env2-v0", observation=observation, slam="truth", max_episode_steps=300)
         policy = make("frontier", env)
         seen, info = env.reset(seed=0)
@@ -247,4 +247,4 @@ def test_frontier_explores_with_any_observation() -> None:
             assert not terminated
         known.append(info["completeness"])
     assert min(known) > 0.4
-    assert known[1] == known[2], "the histogram shows the same hits as the sectors"
+    assert known[1] == known[2] == known[3], "they show the same hits as the sectors"

@@ -23,6 +23,7 @@ def test_gymnasium_finds_nothing_to_complain_about(name: str) -> None:
     [
         {"observation": "sectors"},
         {"observation": "frontier_histogram"},
+        {"observation": "frontier_arcs"},
         {"observation": "map"},
         {"observation": "map", "action": "continuous", "reward": "combined"},
         {"reward": "d_optimality", "observation": "da_slam_entropy", "action": "continuous"},

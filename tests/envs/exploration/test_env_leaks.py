@@ -53,7 +53,9 @@ def episode(shift: tuple[float, float, float] | None, **keywords: Any) -> list[d
     return record
 
 
-@pytest.mark.parametrize("observation", ["da_slam", "da_slam_entropy", "sectors", "frontier_histogram", "map"])
+@pytest.mark.parametrize(
+    "observation", ["da_slam", "da_slam_entropy", "sectors", "frontier_histogram", "frontier_arcs", "map"]
+)
 @pytest.mark.parametrize("reward", ["completeness", "d_optimality"])
 def test_shifting_the_truth_unnoticed_changes_nothing_but_the_truth(observation: str, reward: str) -> None:
     honest = episode(None, observation=observation, reward=reward)

@@ -22,6 +22,7 @@ FOREIGN: list[dict[str, Any]] = [
     {"lidar": "hokuyo_urg_04lx", "robot": "turtlebot3_waffle", "observation": "map", "action": "continuous"},
     {"lidar": {"rate": 2.0, "min_range": 0.3}, "robot": {"radius": 0.15, "reverse": True}, "action": "continuous"},
     {"robot": "jackal", "lidar": {"beams": 90}, "observation": "frontier_histogram"},
+    {"robot": "turtlebot3_waffle", "lidar": {"beams": 90, "field_of_view": 4.0}, "observation": "frontier_arcs"},
 ]
 
 

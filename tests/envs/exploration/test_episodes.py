@@ -12,7 +12,7 @@ def begun(worlds: int = 2, **keywords: object) -> ExplorationEpisodes:
     return made
 
 
-@pytest.mark.parametrize("observation", ["da_slam", "sectors", "frontier_histogram", "map"])
+@pytest.mark.parametrize("observation", ["da_slam", "sectors", "frontier_histogram", "frontier_arcs", "map"])
 def test_observations_lie_in_their_space(observation: str) -> None:
     made = begun(observation=observation)
     for _ in range(3):
