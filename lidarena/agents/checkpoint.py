@@ -23,6 +23,7 @@ from numpy.typing import NDArray
 from safetensors import SafetensorError
 from stable_baselines3.common.base_class import BaseAlgorithm
 
+from lidarena.agents.learner_config import ON_POLICY
 from lidarena.agents.replay_memory import memory_of, set_memory
 from lidarena.agents.trainer_state import (
     arrays_of,
@@ -50,6 +51,10 @@ _VERSION_0_1 = 3
 _KEYWORDS = "env.keywords."
 _FILES = ("model.safetensors", "worlds.npz", "trainer.npz", "trainer.json")
 _MEMORY = "memory.npz"
+
+MAY_CHANGE = tuple(f"{block}.ent_coef" for block in ON_POLICY)
+"""What may differ when a training goes on although it changes the updates: it may end without the entropy bonus that
+made it try enough. (Checkpoints tell it all the same if they were made before it was free.)"""
 
 
 def save(
@@ -142,7 +147,7 @@ def _check(folder: Path, about: Mapping[str, Any], made_with: Mapping[str, Any])
     if about["version"] not in (_VERSION, _VERSION_0_1):
         raise ConfigError(f"the checkpoint {str(folder)!r} is of version {about['version']}, not {_VERSION}")
     saved, wanted = about["made_with"], json.loads(json.dumps(dict(made_with)))
-    for key in sorted(saved.keys() | wanted.keys()):
+    for key in sorted((saved.keys() | wanted.keys()) - set(MAY_CHANGE)):
         renamed = about["version"] == _VERSION_0_1 and f"{key}.".startswith(_KEYWORDS)
         if not renamed and saved.get(key) != wanted.get(key):
             raise ConfigError(

@@ -14,9 +14,10 @@ from lidarena.envs.registration import keywords_of_version_0_1
 
 POLICY_FILES = ("policy.safetensors", "policy.json")
 """What `lidarena.agents.load` reads."""
-_MAY_CHANGE = ("total_steps", "checkpoint_every", "torch_threads", "out")
+_MAY_CHANGE = ("total_steps", "checkpoint_every", "torch_threads", "out", *checkpoint.MAY_CHANGE)
 """Keys that may differ when a training goes on: no world or update is another for them, except that a learning rate
-with a start and an end falls over ``total_steps``, anew from where the training is when they are raised."""
+with a start and an end falls over ``total_steps``, anew from where the training is when they are raised, and that a
+training may end without the entropy bonus that made it try enough."""
 _NEWER = {"algorithm": "PPO", "normalize_observation": False}
 """Keys that the first version did not know, with what it did; where nothing else is asked for they are left out."""
 
@@ -100,8 +101,9 @@ def checkpoint_to_resume(folder: str | Path, config: TrainingConfig) -> Path | N
 
 def fixed_part(config: TrainingConfig) -> dict[str, Any]:
     """Return the keys, as ``--set`` spells them, that must stay the same when a training goes on, with their values."""
-    flat = _flat(config.model_dump(mode="json", by_alias=True, exclude=set(_MAY_CHANGE)))
-    return {key: value for key, value in flat.items() if key not in _NEWER or value != _NEWER[key]}
+    flat = _flat(config.model_dump(mode="json", by_alias=True))
+    kept = {key: value for key, value in flat.items() if key not in _MAY_CHANGE}
+    return {key: value for key, value in kept.items() if key not in _NEWER or value != _NEWER[key]}
 
 
 def keep_policy(folder: Path) -> Path | None:

@@ -28,6 +28,12 @@ def test_another_configuration_is_refused(run: Path, override: str, message: str
         train(small(run, "total_steps=256", override), resume=run, progress=False)
 
 
+def test_a_training_may_end_with_another_entropy_bonus(run: Path) -> None:
+    train(small(run, "total_steps=256", "ppo.ent_coef=0.5"), resume=run, progress=False)
+    assert curve(run)[-1]["step"] == "256"
+    assert load_config(run / "config.yaml", TrainingConfig).ppo.ent_coef == 0.5
+
+
 def test_folders_that_are_no_run(tmp_path: Path, run: Path) -> None:
     with pytest.raises(ConfigError, match=r"no run folder .*nowhere"):
         train(resume=tmp_path / "nowhere")
