@@ -16,6 +16,8 @@ FRONTIER, PLACE = 0, 1
 """Kinds of candidates: a frontier, or a place where the robot has been."""
 BEYOND = 1e3
 """The way to what cannot be reached counts as so long [m]."""
+AWAY = 2.0
+"""Places to which the way is shorter are no candidates: the robot is there [m]."""
 COARSE = 4
 """Ways between candidates are found on blocks of so many cells a side."""
 _FAR_GOAL = 3.0  # a frontier whose nearest reachable cell is farther away than this is behind something [m]
@@ -231,7 +233,7 @@ def add_place(
     column = min(max(math.floor((x - frame[0]) / frame[2]), 0), columns - 1)
     reachable = ground.reachable[w, : rows * columns].reshape(rows, columns)
     row, column = nearest_cell(reachable, float(row), float(column))
-    if row < 0 or not 2.0 < lengths[row, column] < BEYOND:
+    if row < 0 or not AWAY < lengths[row, column] < BEYOND:
         return
     at = _insert(w, lengths[row, column], candidates)
     if at < 0:

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import kernel
 from lidarena.planning.driving.candidates import (
+    AWAY,
     FRONTIER,
     Candidates,
     add_place,
@@ -48,6 +49,7 @@ DRIVES, CHOOSES, ENDS = 0, 1, 2
 """What an explorer says after a step: it has a command, a choice is due, or nothing is left (and it turns)."""
 _BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a place [m]
 _GROWTH = 0.001  # growth of the known map that counts as something new
+_RENEWAL = 1.03  # so much the map must grow between two visits of known places
 _PLACES, _APART = 256, 2.0  # places that are remembered, at least so far apart [m]
 
 
@@ -90,6 +92,8 @@ class Explorers(NamedTuple):
         finished: (W,) bool, whether nothing is left.
         mapped: (W,) cells known at the last planning instant.
         sum_log_d: (W,) ln of D-optimality added up over these, each as of when it was seen.
+        revisits: (W,) bool, whether the robot is on its way to a known place.
+        revisited: (W,) cells known when it last arrived at one.
         places: (W, places, 3) x, y [m] where the robot has been, ln of D-optimality then.
         place_at: (W, places) step of that.
         place_count: (W,) how many.
@@ -106,6 +110,8 @@ class Explorers(NamedTuple):
     finished: NDArray[np.bool_]
     mapped: NDArray[np.int64]
     sum_log_d: NDArray[np.float64]
+    revisits: NDArray[np.bool_]
+    revisited: NDArray[np.int64]
     places: NDArray[np.float64]
     place_at: NDArray[np.int64]
     place_count: NDArray[np.int64]
@@ -125,6 +131,8 @@ def empty_explorers(worlds: int, rows: int, columns: int, most: int, settings: D
         finished=np.zeros(worlds, np.bool_),
         mapped=np.zeros(worlds, np.int64),
         sum_log_d=np.zeros(worlds),
+        revisits=np.zeros(worlds, np.bool_),
+        revisited=np.zeros(worlds, np.int64),
         places=np.zeros((worlds, _PLACES, 3)),
         place_at=np.zeros((worlds, _PLACES), np.int64),
         place_count=np.zeros(worlds, np.int64),
@@ -135,7 +143,7 @@ def begin(explorers: Explorers, world: int) -> None:
     """Begin an episode in one world."""
     forget(explorers.drive, world)
     open_accounts(explorers.accounts, world)
-    for array in explorers[3:11]:
+    for array in explorers[3:13]:
         array[world] = 0
     explorers.place_count[world] = explorers.candidates.number[world] = 0
 
@@ -179,6 +187,8 @@ def advance(
     if drive.has_goal[w]:
         remaining, arrived = remaining_way(w, senses, drive), has_arrived(w, senses, drive)
         watch(w, remaining, arrived, step, settings.timeout, settings.patience, explorers.accounts)
+        if explorers.revisits[w] and remaining <= AWAY + 0.5:
+            explorers.revisits[w], explorers.revisited[w] = False, explorers.mapped[w]
     is_known = survey(w, senses, driver, drive)
     if is_known:
         _note_growth(w, log_d, explorers)
@@ -224,7 +234,8 @@ def _find_candidates(w: int, senses: Perceptions, settings: ExplorerSettings, ex
     drive, candidates = explorers.drive, explorers.candidates
     lengths = lengths_from_robot(w, drive)
     find_frontier_candidates(w, settings.least, lengths, drive, explorers.accounts, candidates)
-    if candidates.number[w] > 0:
+    # who has been to a place must see something new before the next: certainty is no end in itself
+    if candidates.number[w] > 0 and explorers.mapped[w] > _RENEWAL * explorers.revisited[w]:
         for i in range(min(settings.places, explorers.place_count[w])):
             since = (explorers.step[w] - explorers.place_at[w, i]) * settings.period
             place = explorers.places[w, i]
@@ -306,6 +317,7 @@ def _try(w: int, k: int, senses: Perceptions, driver: DriverSettings, explorers:
         if not candidates.usable[w, k, g] or is_given_up(w, x, y, accounts):
             continue
         if go(w, x, y, senses, driver, drive):
+            explorers.revisits[w] = candidates.kind[w, k] != FRONTIER
             pursue(w, x, y, explorers.step[w], accounts)
             return True
         if candidates.kind[w, k] != FRONTIER:

@@ -30,8 +30,8 @@ class GoalChoiceEnv(SingleWorld):
 
     ## Observation space
 
-    ``Box(-60, 60, (candidates, 27 + candidates), float32)``: a row is a candidate, zeros where there is none. The first
-    27 numbers are ``features.NAMES``, the others the lengths of the ways to every candidate / 6 m. The rows are a set:
+    ``Box(-60, 60, (candidates, 28 + candidates), float32)``: a row is a candidate, zeros where there is none. The first
+    28 numbers are ``features.NAMES``, the others the lengths of the ways to every candidate / 6 m. The rows are a set:
     their order says nothing that the numbers do not say.
 
     ## Rewards
@@ -40,10 +40,10 @@ class GoalChoiceEnv(SingleWorld):
 
     | Term | Value | `preference` |
     |------|-------|------|
-    | explored | gain in completeness | 10 |
+    | explored | gain in completeness | 5 |
     | path | minus the path driven, over that which is usual in a floor plan of this size | 1 |
     | time | minus 0.1 m for every second, over the same | 1 |
-    | uncertainty | minus (0.05 + 1.5 preference) times the gain in completeness times ln(D / 1e-4) | 1 |
+    | uncertainty | minus (0.05 + 2.5 preference) times the gain in completeness times ln(D / 1e-4) | 1 |
     | collision | -1 in the step of a collision | 5 |
 
     Nothing is paid for waiting or circling: only mapping, from poses as certain as the preference asks for.

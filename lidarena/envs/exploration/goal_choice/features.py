@@ -32,6 +32,7 @@ NAMES = (
     "apart",  # way to the nearest other frontier / 3 m
     "since",  # for a place: how long ago the robot was there first / 100 s
     "surer",  # for a place: ln of D-optimality now less that when the robot was there first, / 3
+    "wanted",  # the same times the preference
     # the same for all:
     "uncertainty",  # ln of D-optimality / 1e-4, over 3
     "mean_uncertainty",  # its mean over the area that was mapped so far
@@ -101,11 +102,12 @@ def describe(w: int, around: Circumstances, explorers: Explorers, rows: NDArray[
         else:
             row[18] = candidates.since[w, k] / 100.0
             row[19] = (around.log_d[w] - candidates.log_d[w, k]) / 3.0
-        row[20] = (around.log_d[w] - math.log(USUAL_D)) / 3.0
-        row[21] = (mean_log_d - math.log(USUAL_D)) / 3.0
-        row[22], row[23], row[24] = seconds / 200.0, area / 50.0, frontiers / 10.0
-        row[25] = (explorers.step[w] - explorers.grown_at[w]) * around.period / 20.0
-        row[26] = around.preference[w]
+            row[20] = max(row[19], 0.0) * around.preference[w]
+        row[21] = (around.log_d[w] - math.log(USUAL_D)) / 3.0
+        row[22] = (mean_log_d - math.log(USUAL_D)) / 3.0
+        row[23], row[24], row[25] = seconds / 200.0, area / 50.0, frontiers / 10.0
+        row[26] = (explorers.step[w] - explorers.grown_at[w]) * around.period / 20.0
+        row[27] = around.preference[w]
         for j in range(count):
             between = candidates.between[w, k, j] if j != k else 0.0
             row[FEATURES + j] = min(between, _FARTHEST) / 6.0

@@ -18,7 +18,7 @@ USUAL_SPEED = 0.1
 
 REWARDS = RewardTerms(
     ("explored", "path", "time", "uncertainty", "collision"),
-    {"preference": {"explored": 10.0, "path": 1.0, "time": 1.0, "uncertainty": 1.0, "collision": 5.0}},
+    {"preference": {"explored": 5.0, "path": 1.0, "time": 1.0, "uncertainty": 1.0, "collision": 5.0}},
 )
 """See ``GoalChoiceTerms``."""
 
@@ -29,7 +29,7 @@ class GoalChoiceTerms:
     - ``explored``: the gain in map completeness, from 0 to 1.
     - ``path``: -Δs / s_A; s is the path by odometry, s_A = 0.55/m · A what is usual in a floor plan of the area A.
     - ``time``: -0.1 m/s · Δt / s_A.
-    - ``uncertainty``: -(0.05 + 1.5 p) Δc ln(D / 1e-4): p is the preference, Δc the gain in completeness, D the
+    - ``uncertainty``: -(0.05 + 2.5 p) Δc ln(D / 1e-4): p is the preference, Δc the gain in completeness, D the
       D-optimality of the pose from which it was seen. Over an episode it is the mean of ln D over the map: what was
       drawn from an uncertain pose is drawn awry. Only mapping is paid for, so that waiting or circling where the pose
       is certain earns nothing and costs way and time.
@@ -64,7 +64,7 @@ class GoalChoiceTerms:
             "explored": gain,
             "path": -path / usual,
             "time": np.where(active, -USUAL_SPEED * period / usual, 0.0),
-            "uncertainty": -(0.05 + 1.5 * preference) * gain * (self.log_d() - math.log(USUAL_D)),
+            "uncertainty": -(0.05 + 2.5 * preference) * gain * (self.log_d() - math.log(USUAL_D)),
             "collision": np.where(active & core.sensors.collision, -1.0, 0.0),
         }
 

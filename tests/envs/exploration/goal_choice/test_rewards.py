@@ -29,5 +29,5 @@ def test_terms_add_up_to_what_was_driven_and_mapped() -> None:
     assert math.isclose(sums["path"], -core.sensors.path_length[0] / usual)
     assert math.isclose(sums["time"], -0.1 * 4.0 / usual)
     log_d = math.log(core.d_optimality[0] / 1e-4)
-    assert math.isclose(sums["uncertainty"], -1.55 * sums["explored"] * log_d, abs_tol=1e-12)
+    assert math.isclose(sums["uncertainty"], -2.55 * sums["explored"] * log_d, abs_tol=1e-12)
     assert core.sensors.path_length[1] == 0.0
