@@ -40,7 +40,7 @@ class ChoosingExplorer:
     def __init__(
         self,
         env: Any,
-        choose: Choose,
+        choose: Choose | None = None,
         *,
         preference: float = 0.5,
         candidates: int = 24,
@@ -52,7 +52,7 @@ class ChoosingExplorer:
 
         Args:
             env: The environment; any observation, reward or action.
-            choose: Who chooses; one that is not there stands for the nearest frontier.
+            choose: Who chooses; one that is not there stands for the nearest frontier, which None always chooses.
             preference: See above.
             candidates: Most candidates that ``choose`` is told of.
             places: Known places among them, at most.
@@ -103,7 +103,7 @@ class ChoosingExplorer:
         around = Circumstances(np.array([log_d]), np.array([self.preference]), self._robot.period)
         rows = np.zeros((self._most, FEATURES + self._most), np.float32)
         describe(0, around, explorers, rows)
-        return self._choose(rows)
+        return self._choose(rows) if self._choose is not None else -1
 
     @property
     def path(self) -> NDArray[np.float64]:

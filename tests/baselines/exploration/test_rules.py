@@ -7,6 +7,11 @@ import pytest
 import lidarena
 from lidarena.base.errors import ConfigError
 from lidarena.baselines.exploration.rules import visible_unknown
+from tests.baselines.exploration.plain_rules import (
+    PlainDistanceAdvantage,
+    PlainInformationGain,
+    PlainNearestFrontier,
+)
 
 RULES = ["nearest_frontier", "information_gain", "distance_advantage"]
 
@@ -22,6 +27,29 @@ def explore(name: str, steps: int = 900) -> tuple[float, float, bool]:
         if ended or policy.finished:
             break
     return info["completeness"], info["truth"]["path_length"], info["collision"]
+
+
+@pytest.mark.parametrize(
+    ("name", "plain"),
+    [
+        ("nearest_frontier", PlainNearestFrontier),
+        ("information_gain", PlainInformationGain),
+        ("distance_advantage", PlainDistanceAdvantage),
+    ],
+)
+def test_a_rule_drives_as_its_plain_version_does(name: str, plain: type) -> None:
+    env = gym.make("lidarena/Exploration-v0", map="maze:3?width=6&height=5.5", slam="truth", stop_at=None)
+    actions = []
+    for policy in (lidarena.baselines.make(name, env), plain(env)):
+        observation, info = env.reset(seed=1)
+        policy.reset(seed=1)
+        actions.append([])
+        for _ in range(350):
+            actions[-1].append(int(policy.act(observation, info)))
+            observation, _, ended, _, info = env.step(actions[-1][-1])
+            if ended or policy.finished:
+                break
+    assert actions[0] == actions[1]
 
 
 @pytest.mark.parametrize("name", RULES)
