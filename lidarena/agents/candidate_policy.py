@@ -12,7 +12,7 @@ _SHARPNESS = 0.1
 """Scale of what the layers add to the rule before training."""
 _HEADS = 4
 _FAR = -1e9
-RULE = {"detour": -6.0, "turn": -2.0, "size": 2.0, "pursued": 3.0, "place": -8.0, "wanted": 15.0}
+RULE = {"detour": -6.0, "turn": -2.0, "size": 2.0, "pursued": 3.0, "place": -8.0, "wanted": 21.0}
 """Weights of a sound rule to begin learning from: the nearest frontier, a little for turning, size and keeping on, and
 a place that is surer than here by more than the detour to it is worth. A metre weighs 2."""
 

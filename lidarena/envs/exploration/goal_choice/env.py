@@ -42,7 +42,7 @@ class GoalChoiceEnv(SingleWorld):
     |------|-------|------|
     | explored | gain in completeness | 5 |
     | path | minus the path driven, over that which is usual in a floor plan of this size | 1 |
-    | time | minus 0.1 m for every second, over the same | 1 |
+    | time | minus 0.03 m for every second, over the same | 1 |
     | uncertainty | minus (0.05 + 2.5 preference) times the gain in completeness times ln(D / 1e-4) | 1 |
     | collision | -1 in the step of a collision | 5 |
 
@@ -73,7 +73,7 @@ class GoalChoiceEnv(SingleWorld):
     | `candidates` | int | `24` | most candidates that are told of |
     | `places` | int | `6` | known places among them, at most |
     | `least_frontier` | float | `0.2` | smallest frontier that is a candidate [m] |
-    | `choice_period` | float | `1.0` | a choice may be changed so often [s] |
+    | `choice_period` | float | `2.0` | a choice may be changed so often [s] |
     | `time_limit` | float or None | `2000.0` | truncates [s] |
     | `reward` | str, dict or function | `"preference"` | see above |
     | `max_episode_steps` | int | `2000` | choices after which it truncates; -1 never |

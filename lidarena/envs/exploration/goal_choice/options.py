@@ -47,7 +47,7 @@ class GoalChoiceOptions:
     candidates: int = 24
     places: int = 6
     least_frontier: float = 0.2
-    choice_period: float = 1.0
+    choice_period: float = 2.0
     time_limit: float | None = 2000.0
     reward: RewardSpec = "preference"
     max_episode_steps: int = 2000

@@ -13,8 +13,8 @@ from lidarena.envs.rewards import Floats, RewardTerms
 if TYPE_CHECKING:
     from lidarena.envs.exploration.state import ExplorationCore
 
-USUAL_SPEED = 0.1
-"""What a second costs beside the way, in metres: turning right round takes ten."""
+SECOND = 0.03
+"""What a second costs beside the way [m]: turning right round takes ten."""
 
 REWARDS = RewardTerms(
     ("explored", "path", "time", "uncertainty", "collision"),
@@ -28,7 +28,7 @@ class GoalChoiceTerms:
 
     - ``explored``: the gain in map completeness, from 0 to 1.
     - ``path``: -Δs / s_A; s is the path by odometry, s_A = 0.55/m · A what is usual in a floor plan of the area A.
-    - ``time``: -0.1 m/s · Δt / s_A.
+    - ``time``: -0.03 m/s · Δt / s_A.
     - ``uncertainty``: -(0.05 + 2.5 p) Δc ln(D / 1e-4): p is the preference, Δc the gain in completeness, D the
       D-optimality of the pose from which it was seen. Over an episode it is the mean of ln D over the map: what was
       drawn from an uncertain pose is drawn awry. Only mapping is paid for, so that waiting or circling where the pose
@@ -63,7 +63,7 @@ class GoalChoiceTerms:
         return {
             "explored": gain,
             "path": -path / usual,
-            "time": np.where(active, -USUAL_SPEED * period / usual, 0.0),
+            "time": np.where(active, -SECOND * period / usual, 0.0),
             "uncertainty": -(0.05 + 2.5 * preference) * gain * (self.log_d() - math.log(USUAL_D)),
             "collision": np.where(active & core.sensors.collision, -1.0, 0.0),
         }

@@ -27,7 +27,7 @@ def test_terms_add_up_to_what_was_driven_and_mapped() -> None:
     usual = 0.55 * core.floors.areas[0]
     assert math.isclose(sums["explored"], (core.completeness - begun)[0])
     assert math.isclose(sums["path"], -core.sensors.path_length[0] / usual)
-    assert math.isclose(sums["time"], -0.1 * 4.0 / usual)
+    assert math.isclose(sums["time"], -0.03 * 4.0 / usual)
     log_d = math.log(core.d_optimality[0] / 1e-4)
     assert math.isclose(sums["uncertainty"], -2.55 * sums["explored"] * log_d, abs_tol=1e-12)
     assert core.sensors.path_length[1] == 0.0
