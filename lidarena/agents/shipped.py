@@ -1,5 +1,6 @@
 """The trained agents that come with the package."""
 
+import warnings
 from pathlib import Path
 
 from lidarena.base.errors import PolicyFileError, suggest
@@ -7,6 +8,8 @@ from lidarena.base.errors import PolicyFileError, suggest
 PREFIX = "pretrained:"
 """What a path to one of them begins with, wherever a run folder may stand."""
 _FOLDER = Path(__file__).parent / "weights"
+_SUCCEEDED = {"compass": "low_level"}
+"""Agents that still load, and which is better by now."""
 
 
 def pretrained() -> list[str]:
@@ -14,7 +17,8 @@ def pretrained() -> list[str]:
 
     How each was trained is in ``configs/train`` and in its ``policy.json``.
     """
-    return sorted(folder.name for folder in _FOLDER.iterdir() if (folder / "policy.json").is_file())
+    shipped = {folder.name for folder in _FOLDER.iterdir() if (folder / "policy.json").is_file()}
+    return sorted(shipped - _SUCCEEDED.keys())
 
 
 def resolve(path: str | Path) -> Path:
@@ -27,6 +31,13 @@ def resolve(path: str | Path) -> Path:
     if not text.startswith(PREFIX):
         return Path(path)
     name = text.removeprefix(PREFIX)
-    if name not in pretrained():
+    if name in _SUCCEEDED:
+        successor = PREFIX + _SUCCEEDED[name]
+        warnings.warn(
+            f"{text!r} is succeeded by {successor!r}, which has another observation; it goes with the next version",
+            DeprecationWarning,
+            stacklevel=2,
+        )
+    elif name not in pretrained():
         raise PolicyFileError(f"no agent {name!r} is shipped{suggest(name, pretrained())}")
     return _FOLDER / name

@@ -29,12 +29,12 @@ from tests.agents.test_loading import ARENA
             "action 'continuous'; make it with observation='proximity', action='discrete'",
         ),
         (
-            "compass",
+            "low_level",
             lambda: gym.make("lidarena/Env1-v0"),
             "was trained for exploration environments with observation",
         ),
         (
-            "compass",
+            "low_level",
             lambda: gym.make("lidarena/Arena-v0"),
             "was trained for exploration environments, but this one is of the family 'arena'",
         ),

@@ -25,7 +25,7 @@ def test_without_an_environment_it_is_the_network() -> None:
     ("name", "make", "kind"),
     [
         ("arena", lambda: gym.make("lidarena/Arena-v0", **ARENA), LearnedPolicy),
-        ("compass", lambda: gym.make("lidarena/Env2-v0", observation="frontier_histogram"), LearnedPolicy),
+        ("low_level", lambda: gym.make("lidarena/Env2-v0", observation="frontier_arcs"), LearnedPolicy),
         ("combined", lambda: gym.make("lidarena/Env2-v0"), GoalChoiceAgent),
         ("combined", lambda: gym.make("lidarena/Env2-v0", observation="map", action="continuous"), GoalChoiceAgent),
         ("combined", lambda: gym.make("lidarena/GoalChoice-v0", map="env2"), LearnedPolicy),

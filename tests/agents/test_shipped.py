@@ -34,6 +34,7 @@ def actions_of(name: str, deterministic: bool) -> list[Any]:
     return [np.asarray(policy.act(observation)).tolist() for observation in observations]
 
 
+@pytest.mark.filterwarnings("ignore:.*is succeeded by")
 @pytest.mark.parametrize("name", RECORDED)
 def test_the_shipped_weights_act_as_in_the_first_version(name: str) -> None:
     found = [json.dumps(actions_of(name, deterministic)).encode() for deterministic in (True, False)]
@@ -91,20 +92,30 @@ def test_the_combined_agent_explores_a_world_that_it_was_not_trained_in() -> Non
 
 def test_an_agent_that_was_told_other_features_is_refused_in_one_sentence() -> None:
     env = gym.make("lidarena/Env1-v0")
-    with pytest.raises(PolicyFileError, match=r"trained to choose by features of shape \(76,\).*: train it anew$"):
-        GoalChoiceAgent(env, agents.load("pretrained:compass"))
+    with pytest.raises(PolicyFileError, match=r"trained to choose by features of shape \(112,\).*: train it anew$"):
+        GoalChoiceAgent(env, agents.load("pretrained:low_level"))
 
 
-def test_the_compass_agent_explores_a_world_that_it_was_not_trained_in() -> None:
-    policy = agents.load("pretrained:compass")
-    env = gym.make("lidarena/Env2-v0", observation="frontier_histogram", max_episode_steps=None)
-    observation, info = env.reset(seed=4)
+@pytest.mark.parametrize("plan", ["env2", "random:furnished"])
+def test_the_low_level_agent_explores_a_world_that_it_was_not_trained_in(plan: str) -> None:
+    env = gym.make("lidarena/Exploration-v0", map=plan, observation="frontier_arcs", max_episode_steps=-1)
+    policy = agents.load("pretrained:low_level", env)
+    observation, info = env.reset(seed=2_000)
     policy.reset(seed=0)
     ended = False
     while not ended:
         observation, _, terminated, truncated, info = env.step(policy.act(observation, info))
         ended = terminated or truncated or info["time"] > 600.0
     assert info["completeness"] >= 0.95 and not info["collision"]
+
+
+def test_the_agent_that_it_takes_the_place_of_still_drives_and_says_which_is_better() -> None:
+    env = gym.make("lidarena/Env1-v0", observation="frontier_histogram")
+    with pytest.warns(DeprecationWarning, match="'pretrained:compass' is succeeded by 'pretrained:low_level'"):
+        policy = agents.load("pretrained:compass", env)
+    observation, info = env.reset(seed=0)
+    assert env.action_space.contains(policy.act(observation, info))
+    assert "compass" not in agents.pretrained()
 
 
 def test_an_agent_that_is_not_shipped_is_refused() -> None:
