@@ -53,6 +53,11 @@ class GoalChoiceAgent:
         """Whether nothing is left to explore."""
         return self._explorer.finished
 
+    @property
+    def ending(self) -> str:
+        """Why the exploration has ended; see ``ChoosingExplorer``."""
+        return self._explorer.ending
+
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; ``seed`` matters only if the network draws its choices."""
         self.learned.reset(seed)

@@ -14,6 +14,7 @@ from lidarena.envs.exploration.goal_choice.features import FEATURES, Circumstanc
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.planning.driving.explorer import (
     CHOOSES,
+    ENDINGS,
     Explorers,
     advance,
     begin,
@@ -104,6 +105,11 @@ class ChoosingExplorer:
         rows = np.zeros((self._most, FEATURES + self._most), np.float32)
         describe(0, around, explorers, rows)
         return self._choose(rows) if self._choose is not None else -1
+
+    @property
+    def ending(self) -> str:
+        """Why the exploration has ended, one of ``ENDINGS``; empty before it has."""
+        return "" if self._explorers is None or not self.finished else ENDINGS[int(self._explorers.ending[0])]
 
     @property
     def path(self) -> NDArray[np.float64]:

@@ -11,6 +11,7 @@ from lidarena.baselines.exploration.driving import Driver, Terrain
 from lidarena.baselines.exploration.goal_tracker import Goal, GoalBlacklist
 from lidarena.baselines.exploration.robot_interface import Robot
 from lidarena.baselines.registry import register
+from lidarena.planning.driving.explorer import ENDINGS, EXPLORED, FRUITLESS, OUT_OF_REACH, UNFINISHED
 from lidarena.planning.grid.frontiers import Frontier, find_frontiers, nearest_cell
 
 _FAR_GOAL = 3.0  # a frontier whose nearest reachable cell is farther away than this is behind something (m)
@@ -64,7 +65,6 @@ class FrontierPolicy:
             planner_period: Time between two planning instants (s).
             progress_timeout: A goal is given up after this time without progress (s).
             arrival_patience: How long to look around at a goal whose frontier does not vanish (s).
-
             persistence: How much less another frontier must cost (m) for the robot to turn away from the one it is
                 driving to, as long as that one has not vanished; 0 = explore_lite.
             last_pass_timeout: The second pass ends when this time (s) has not added 0.1% to the map.
@@ -100,11 +100,16 @@ class FrontierPolicy:
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; nothing here is random."""
         self.driver.reset()
-        self.finished = False
+        self.finished, self._ending = False, UNFINISHED
         self.frontiers: list[Frontier] = []
         self._blacklist = GoalBlacklist(self._timeout, self._patience)
         self._step = self._planned_at = self._wanted_at = 0
         self._known, self._grown_at = 0, 0
+
+    @property
+    def ending(self) -> str:
+        """Why the exploration has ended, one of ``ENDINGS``; empty before it has."""
+        return ENDINGS[self._ending] if self.finished else ""
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Return the next action.
@@ -142,9 +147,11 @@ class FrontierPolicy:
         for size in self._sizes:
             self.frontiers = self._search(terrain, size)
             if self._is_last(size) and self._is_exhausted(terrain):
+                self._ending = FRUITLESS
                 return False
             if self._pursue(self.frontiers, terrain):
                 return True
+        self._ending = OUT_OF_REACH if self.frontiers else EXPLORED
         return self.driver.is_cornered and bool(self.frontiers)
 
     def _pursue(self, frontiers: Sequence[Frontier], terrain: Terrain) -> bool:

@@ -47,6 +47,10 @@ from lidarena.planning.driving.survey import survey
 
 DRIVES, CHOOSES, ENDS = 0, 1, 2
 """What an explorer says after a step: it has a command, a choice is due, or nothing is left (and it turns)."""
+UNFINISHED, EXPLORED, OUT_OF_REACH, FRUITLESS = 0, 1, 2, 3
+"""Why an exploration has ended: it has not; no frontier is left; none that can be reached; the map hardly grows."""
+ENDINGS = ("", "explored", "out of reach", "fruitless")
+"""Their names."""
 _BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a place [m]
 _GROWTH = 0.001  # growth of the known map that counts as something new
 _RENEWAL = 1.03  # so much the map must grow between two visits of known places
@@ -90,6 +94,7 @@ class Explorers(NamedTuple):
         known: (W,) cells known when something new came last.
         grown_at: (W,) step of that.
         finished: (W,) bool, whether nothing is left.
+        ending: (W,) why, as far as can be said now; an index of ``ENDINGS``.
         mapped: (W,) cells known at the last planning instant.
         sum_log_d: (W,) ln of D-optimality added up over these, each as of when it was seen.
         revisits: (W,) bool, whether the robot is on its way to a known place.
@@ -108,6 +113,7 @@ class Explorers(NamedTuple):
     known: NDArray[np.int64]
     grown_at: NDArray[np.int64]
     finished: NDArray[np.bool_]
+    ending: NDArray[np.int64]
     mapped: NDArray[np.int64]
     sum_log_d: NDArray[np.float64]
     revisits: NDArray[np.bool_]
@@ -129,6 +135,7 @@ def empty_explorers(worlds: int, rows: int, columns: int, most: int, settings: D
         known=np.zeros(worlds, np.int64),
         grown_at=np.zeros(worlds, np.int64),
         finished=np.zeros(worlds, np.bool_),
+        ending=np.zeros(worlds, np.int64),
         mapped=np.zeros(worlds, np.int64),
         sum_log_d=np.zeros(worlds),
         revisits=np.zeros(worlds, np.bool_),
@@ -143,7 +150,7 @@ def begin(explorers: Explorers, world: int) -> None:
     """Begin an episode in one world."""
     forget(explorers.drive, world)
     open_accounts(explorers.accounts, world)
-    for array in explorers[3:13]:
+    for array in explorers[3:14]:
         array[world] = 0
     explorers.place_count[world] = explorers.candidates.number[world] = 0
 
@@ -193,7 +200,7 @@ def advance(
     if is_known:
         _note_growth(w, log_d, explorers)
         _find_candidates(w, senses, settings, explorers)
-        if _nearest_frontier(w, explorers.candidates) >= 0 and not _is_exhausted(w, settings, explorers):
+        if _has_choice(w, settings, explorers):
             return CHOOSES
         if explorers.candidates.found[w] and is_cornered(w, senses, driver, drive):
             explorers.wanted_at[w] = step
@@ -276,6 +283,19 @@ def _nearest_frontier(w: int, candidates: Candidates) -> int:
         if candidates.kind[w, k] == FRONTIER:
             return k
     return -1
+
+
+@kernel
+def _has_choice(w: int, settings: ExplorerSettings, explorers: Explorers) -> bool:
+    """Whether there is a frontier to choose; notes why, if there is not."""
+    explorers.ending[w] = OUT_OF_REACH if explorers.candidates.found[w] else EXPLORED
+    if _nearest_frontier(w, explorers.candidates) < 0:
+        return False
+    if _is_exhausted(w, settings, explorers):
+        explorers.ending[w] = FRUITLESS
+        return False
+    explorers.ending[w] = UNFINISHED
+    return True
 
 
 @kernel

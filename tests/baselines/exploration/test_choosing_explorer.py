@@ -33,6 +33,9 @@ def test_it_chooses_as_in_the_environment_of_choices() -> None:
         if terminated:
             break
     assert k == len(asked) and terminated and info["completeness"] == end["completeness"] > 0.98
+    assert policy.ending == end["ending"] == "explored"
+    policy.reset()
+    assert policy.ending == ""
 
 
 @pytest.mark.parametrize("preference", [-0.1, 1.1, np.nan])

@@ -205,6 +205,18 @@ def test_gives_up_what_it_cannot_reach():
     info, _ = explore(env, policy, 2000)
     assert policy.finished and not info["collision"]
     assert policy._blacklist.given_up
+    assert policy.ending == "out of reach"
+
+
+@pytest.mark.parametrize(("options", "ending"), [({}, "explored"), ({"last_pass_timeout": 0.0}, "fruitless")])
+def test_says_why_it_has_ended(options, ending):
+    env = FakeExploration(ROOMS, (1.0, 1.0, 0.0))
+    policy = make("frontier", env, **options)
+    assert policy.ending == ""
+    explore(env, policy, 4000)
+    assert policy.finished and policy.ending == ending
+    policy.reset()
+    assert policy.ending == ""
 
 
 def test_escapes_from_a_start_too_near_to_a_wall():

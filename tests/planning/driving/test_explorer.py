@@ -8,7 +8,9 @@ import pytest
 
 import lidarena
 from lidarena.planning.driving.candidates import FRONTIER, PLACE, Candidates
-from lidarena.planning.driving.explorer import CHOOSES, ENDS, advance, command, set_out
+from lidarena.planning.driving.explorer import CHOOSES, ENDINGS, ENDS, advance, command, set_out
+from lidarena.world.floorplan import Floorplan
+from tests.baselines.exploration.plain_rules import PlainNearestFrontier
 from tests.planning.driving.worlds import hired, make_world, perceived
 
 
@@ -71,3 +73,26 @@ def test_places_that_are_known_are_offered_once_the_robot_is_away_from_them() ->
     places = candidates.kind[0, :count] == PLACE
     assert places.any() and (candidates.way[0, :count][places] > 2.0).all()
     assert (candidates.since[0, :count][places] > 0.0).all()
+
+
+def two_rooms(door: float) -> Floorplan:
+    walls = [(0, 0, 5, 0), (0, 2.5, 5, 2.5), (0, 0, 0, 2.5), (5, 0, 5, 2.5)]
+    walls += [(2.5, 0, 2.5, 1.25 - door / 2), (2.5, 1.35 + door / 2, 2.5, 2.5)]
+    return Floorplan.from_shapes("two rooms", (-0.1, -0.1, 5.1, 2.6), walls, thickness=0.1, start=(1.2, 1.2, 0.3))
+
+
+@pytest.mark.parametrize(("door", "ending"), [(0.8, "explored"), (0.45, "out of reach")])
+def test_it_says_why_it_ends_as_the_baseline_does(door: float, ending: str) -> None:
+    env, info = make_world(map=two_rooms(door), start=None)
+    policy = PlainNearestFrontier(env)
+    observation, expected, told = None, [], info
+    while not policy.finished and len(expected) < 900:
+        assert policy.ending == ""
+        expected.append(int(policy.act(observation, told)))
+        observation, _, _, _, told = env.step(expected[-1])
+    assert policy.ending == ending and not told["collision"]
+    assert (told["completeness"] > 0.99) == (ending == "explored")
+    again = env.reset(seed=1)[1]
+    actions, explorers, ended = drive(env, again, len(expected))
+    assert ended and actions == expected[: len(actions)]
+    assert ENDINGS[explorers.ending[0]] == ending

@@ -60,8 +60,9 @@ class GoalChoiceEnv(SingleWorld):
     ## Info
 
     ``completeness``, ``pose`` (3,), ``d_optimality``, ``path_length`` [m], ``time`` [s], ``collision``, ``success``
-    (nothing is left), ``radius`` [m], ``preference``, ``action_mask``, ``reward_terms``; with ``expose_truth=True``
-    ``truth``.
+    (nothing is left), ``ending`` (why it has ended: ``"explored"``, ``"out of reach"`` where frontiers are left that
+    cannot be reached, ``"fruitless"`` where nothing new came for two minutes; else empty), ``radius`` [m],
+    ``preference``, ``action_mask``, ``reward_terms``; with ``expose_truth=True`` ``truth``.
 
     ## Arguments
 

@@ -29,7 +29,7 @@ from lidarena.envs.path_recorder import PathRecorder
 from lidarena.envs.rewards import StepRewards, choose_reward
 from lidarena.envs.worker_threads import on_threads
 from lidarena.planning.driving import explorer
-from lidarena.planning.driving.explorer import CHOOSES, DRIVES, ENDS, empty_explorers
+from lidarena.planning.driving.explorer import CHOOSES, DRIVES, ENDINGS, ENDS, empty_explorers
 from lidarena.planning.driving.state import Perceptions
 from lidarena.planning.driving.survey import look_around, survey
 from lidarena.slam.readings import Share
@@ -196,6 +196,7 @@ class GoalChoiceEpisodes:
                 "path_length": core.sensors.path_length.copy(),
                 "time": self._steps * self.options.world.decision_period,
                 "collision": core.sensors.collision.copy(),
+                "ending": np.array(ENDINGS)[np.where(self._crew.status == ENDS, self._crew.explorers.ending, 0)],
                 "success": (self._crew.status == ENDS) & ~core.sensors.collision,
                 "radius": np.full(self.worlds, core.robot.radius),
                 "preference": self.preference.copy(),
