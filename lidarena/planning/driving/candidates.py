@@ -85,13 +85,10 @@ def empty_candidates(worlds: int, most: int) -> Candidates:
 
 @kernel
 def lengths_from_robot(w: int, drive: Drive) -> NDArray[np.float64]:
-    """Length of the way from the robot to every cell of the ground (rows, columns) [m]."""
+    """Length of the way from the robot to every cell of the ground (rows, columns) [m], as of the newest survey."""
     ground = drive.ground
     rows, columns = ground.extent[w, 2], ground.extent[w, 3]
-    cost = ground.cost[w, : rows * columns].reshape(rows, columns)
-    lengths: NDArray[np.float64] = way_lengths(cost < np.inf, ground.cell[w, 0], ground.cell[w, 1])
-    lengths *= ground.frame[w, 2]
-    return lengths
+    return ground.way[w, : rows * columns].reshape(rows, columns)
 
 
 @kernel

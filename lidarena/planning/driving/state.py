@@ -65,6 +65,7 @@ class KnownGround(NamedTuple):
         closed: (W, cells) bool, cells where no robot's centre must be.
         cost: (W, cells) of entering a cell, inf where blocked.
         reachable: (W, cells) bool, cells that can be reached from the robot.
+        way: (W, cells) length of the way from the robot to each cell, inf where there is none [m].
         extent: (W, 4) first row and column in the map, rows, columns; no rows: nothing is known.
         frame: (W, 3) x, y of the corner, side of a cell [m].
         cell: (W, 2) row and column of the robot in it.
@@ -75,6 +76,7 @@ class KnownGround(NamedTuple):
     closed: NDArray[np.bool_]
     cost: NDArray[np.float64]
     reachable: NDArray[np.bool_]
+    way: NDArray[np.float64]
     extent: NDArray[np.int64]
     frame: NDArray[np.float64]
     cell: NDArray[np.int64]
@@ -151,6 +153,7 @@ def _empty_ground(worlds: int, cells: int) -> KnownGround:
         np.zeros((worlds, cells), np.bool_),
         np.zeros((worlds, cells)),
         np.zeros((worlds, cells), np.bool_),
+        np.zeros((worlds, cells)),
         np.zeros((worlds, 4), np.int64),
         np.zeros((worlds, 3)),
         np.zeros((worlds, 2), np.int64),

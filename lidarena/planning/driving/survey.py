@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import inlined, kernel, leaf
 from lidarena.planning.driving.state import (
     ESCAPE,
     INFLATED,
@@ -18,7 +18,8 @@ from lidarena.planning.driving.state import (
     Perceptions,
 )
 from lidarena.planning.grid.frontiers import nearest_cell
-from lidarena.planning.grid.inflation import ESCAPE_BASE, ESCAPE_SLOPE, cell_costs, cell_distances
+from lidarena.planning.grid.inflation import ESCAPE_BASE, ESCAPE_SLOPE, cost_at, squared_distances
+from lidarena.planning.grid.way_lengths import way_lengths
 
 _OCCUPIED = 50
 _WEIGHT, _RATE = 5.0, 10.0  # of the inflation, as in Inflation
@@ -41,9 +42,40 @@ def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: 
     drive.hit_counts[w, slot] = count
 
 
+@inlined
+def _reach(settings: DriverSettings) -> int:
+    """How far clearances matter, in cells."""
+    return math.ceil((INFLATED + settings.extra + settings.resolution) / settings.resolution)
+
+
+@inlined
+def _gap_of(square: np.int32, side: float) -> np.float32:
+    """Clearance [m] of a cell so far from what is occupied."""
+    return max((np.sqrt(np.float32(square)) - np.float32(0.5)) * np.float32(side), np.float32(0.0))
+
+
+@leaf
+def _fill_gaps(
+    squares: NDArray[np.int32],
+    occupancy: NDArray[np.int8],
+    side: float,
+    gap: NDArray[np.float32],
+    closed: NDArray[np.bool_],
+) -> None:
+    for k in range(len(squares)):
+        gap[k] = _gap_of(squares[k], side)
+        closed[k] = occupancy[k] < 0 or occupancy[k] >= _OCCUPIED
+
+
 @kernel
-def _fill(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive, ground: KnownGround) -> None:
-    """Fill in occupancy, clearance and closed cells of a world's grid whose extent is set."""
+def _fill(
+    w: int, senses: Perceptions, settings: DriverSettings, drive: Drive, ground: KnownGround
+) -> NDArray[np.int32]:
+    """Fill in occupancy, clearance and closed cells of a world's grid whose extent is set.
+
+    Returns:
+        (cells,) squared distances to what is occupied, in cells, as far as it matters.
+    """
     first_r, first_c = ground.extent[w, 0], ground.extent[w, 1]
     rows, columns = ground.extent[w, 2], ground.extent[w, 3]
     cells, side = rows * columns, settings.resolution
@@ -57,11 +89,9 @@ def _fill(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive, g
             r = math.floor((drive.hits[w, slot, i, 1] - y) / side)
             if 0 <= r < rows and 0 <= c < columns:
                 occupancy[r, c] = 100
-    reach = math.ceil((INFLATED + settings.extra + side) / side)
-    distance = cell_distances(occupancy, _OCCUPIED, reach).reshape(cells)
-    for k in range(cells):
-        ground.gap[w, k] = max((distance[k] - np.float32(0.5)) * np.float32(side), np.float32(0.0))
-        ground.closed[w, k] = ground.occupancy[w, k] < 0 or ground.occupancy[w, k] >= _OCCUPIED
+    squares = squared_distances(occupancy, _OCCUPIED, _reach(settings)).reshape(cells)
+    _fill_gaps(squares, ground.occupancy[w], side, ground.gap[w], ground.closed[w])
+    return squares
 
 
 @kernel
@@ -85,21 +115,40 @@ def survey(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) 
     ground, side = drive.ground, settings.resolution
     if not _crop(senses.maps[w], ground.extent[w]):
         return False
-    _fill(w, senses, settings, drive, ground)
+    squares = _fill(w, senses, settings, drive, ground)
     rows, columns = ground.extent[w, 2], ground.extent[w, 3]
     cells, frame = rows * columns, ground.frame[w]
     row = min(max(math.floor((senses.poses[w, 1] - frame[1]) / side), 0), rows - 1)
     column = min(max(math.floor((senses.poses[w, 0] - frame[0]) / side), 0), columns - 1)
     ground.cell[w, 0], ground.cell[w, 1] = row, column
-    occupancy = ground.occupancy[w, :cells].reshape(rows, columns)
-    gap = ground.gap[w, :cells].reshape(rows, columns)
     cost = ground.cost[w, :cells].reshape(rows, columns)
-    lethal, inflated = LETHAL + settings.extra, INFLATED + settings.extra
-    cost[:] = cell_costs(occupancy, gap, lethal, inflated, _WEIGHT, _RATE, False, _OCCUPIED)
+    _fill_costs(w, squares, settings, ground)
     if not math.isfinite(cost[row, column]):
-        _open(cost, occupancy, gap, row, column, math.ceil((ESCAPE + settings.extra) / side), lethal)
-    _connect(cost, row, column, ground.reachable[w, :cells].reshape(rows, columns))
+        occupancy = ground.occupancy[w, :cells].reshape(rows, columns)
+        gap = ground.gap[w, :cells].reshape(rows, columns)
+        reach = math.ceil((ESCAPE + settings.extra) / side)
+        _open(cost, occupancy, gap, row, column, reach, LETHAL + settings.extra)
+    _connect(w, ground)
     return True
+
+
+@kernel
+def _fill_costs(w: int, squares: NDArray[np.int32], settings: DriverSettings, ground: KnownGround) -> None:
+    """Fill in what entering the cells costs: one of as many numbers as there are squared distances."""
+    lethal, inflated = LETHAL + settings.extra, INFLATED + settings.extra
+    costs = np.empty((_reach(settings) + 1) ** 2 + 1)
+    for square in range(len(costs)):
+        gap = _gap_of(np.int32(square), settings.resolution)
+        costs[square] = cost_at(gap, lethal, inflated, _WEIGHT, _RATE)
+    _look_up(squares, costs, ground.closed[w], ground.cost[w])
+
+
+@leaf
+def _look_up(
+    squares: NDArray[np.int32], costs: NDArray[np.float64], closed: NDArray[np.bool_], cost: NDArray[np.float64]
+) -> None:
+    for k in range(len(squares)):
+        cost[k] = np.inf if closed[k] else costs[squares[k]]
 
 
 @kernel
@@ -108,9 +157,15 @@ def _crop(grid: NDArray[np.int8], extent: NDArray[np.int64]) -> bool:
     rows, columns = grid.shape
     top, bottom, left, right = rows, -1, columns, -1
     for r in range(rows):
-        for c in range(columns):
-            if grid[r, c] >= 0:
-                top, bottom, left, right = min(top, r), r, min(left, c), max(right, c)
+        first = 0
+        while first < columns and grid[r, first] < 0:
+            first += 1
+        if first == columns:
+            continue
+        last = columns - 1
+        while grid[r, last] < 0:
+            last -= 1
+        top, bottom, left, right = min(top, r), r, min(left, first), max(right, last)
     if bottom < 0:
         extent[:] = 0
         return False
@@ -138,26 +193,20 @@ def _open(
 
 
 @kernel
-def _connect(cost: NDArray[np.float64], row: int, column: int, reachable: NDArray[np.bool_]) -> None:
-    """Mark the cells connected with a cell, or with the passable cell nearest to it; all passable ones without any."""
-    rows, columns = cost.shape
-    passable = np.empty((rows, columns), np.bool_)
-    for r in range(rows):
-        for c in range(columns):
-            passable[r, c] = cost[r, c] < np.inf
-            reachable[r, c] = False
-    r, c = nearest_cell(passable, float(row), float(column))
-    if r < 0:
-        return
-    queue = np.empty((rows * columns, 2), np.int32)
-    queue[0, 0], queue[0, 1], reachable[r, c] = r, c, True
-    head, tail = 0, 1
-    while head < tail:
-        r, c = queue[head, 0], queue[head, 1]
-        head += 1
-        for dr, dc in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-            y, x = r + dr, c + dc
-            if 0 <= y < rows and 0 <= x < columns and passable[y, x] and not reachable[y, x]:
-                reachable[y, x] = True
-                queue[tail, 0], queue[tail, 1] = y, x
-                tail += 1
+def _connect(w: int, ground: KnownGround) -> None:
+    """Measure the ways from the robot's cell, and mark what can be reached from it.
+
+    From a robot in a blocked cell what counts is what is connected with the passable cell nearest to it.
+    """
+    rows, columns = ground.extent[w, 2], ground.extent[w, 3]
+    cells, row, column = rows * columns, ground.cell[w, 0], ground.cell[w, 1]
+    passable = (ground.cost[w, :cells] < np.inf).reshape(rows, columns)
+    lengths = way_lengths(passable, row, column)
+    ground.way[w, :cells] = lengths.reshape(cells) * ground.frame[w, 2]
+    if not passable[row, column]:
+        r, c = nearest_cell(passable, float(row), float(column))
+        if r < 0:
+            ground.reachable[w, :cells] = False
+            return
+        lengths = way_lengths(passable, r, c)
+    ground.reachable[w, :cells] = lengths.reshape(cells) < np.inf

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.jit import kernel
+from lidarena.base.jit import inlined, kernel, leaf
 
 _FREE = 0  # only a cell that is surely free carries the flood, as in explore_lite
 
@@ -66,38 +66,61 @@ def nearest_free(grid: NDArray[np.int8], row: int, col: int) -> tuple[int, int]:
     return -1, -1
 
 
-@kernel
-def _is_frontier(grid: NDArray[np.int8], row: int, col: int) -> bool:
-    rows, cols = grid.shape
-    if grid[row, col] >= 0:
-        return False
-    return bool(
-        (row > 0 and grid[row - 1, col] == _FREE)
-        or (row + 1 < rows and grid[row + 1, col] == _FREE)
-        or (col > 0 and grid[row, col - 1] == _FREE)
-        or (col + 1 < cols and grid[row, col + 1] == _FREE)
-    )
+@inlined
+def _is_frontier(cells: NDArray[np.int8], wide: int, cell: int) -> bool:
+    near_free = cells[cell - wide] == _FREE or cells[cell + wide] == _FREE
+    near_free = near_free or cells[cell - 1] == _FREE or cells[cell + 1] == _FREE
+    return bool(cells[cell] < 0 and near_free)
 
 
-@kernel
+@leaf
 def _grow(
-    grid: NDArray[np.int8], taken: NDArray[np.bool_], cells: NDArray[np.int32], first: int, row: int, col: int
+    cells: NDArray[np.int8], wide: int, taken: NDArray[np.bool_], members: NDArray[np.int32], first: int, cell: int
 ) -> int:
-    """Write the frontier that contains (row, col) into ``cells`` (n, 2) from ``first`` on; return where it ends."""
-    rows, cols = grid.shape
-    cells[first, 0], cells[first, 1] = row, col
-    taken[row, col] = True
+    """Write the frontier that contains a cell into ``members`` (n,) from ``first`` on; return where it ends."""
+    members[first], taken[cell] = cell, True
     head, tail = first, first + 1
     while head < tail:
-        r, c = cells[head, 0], cells[head, 1]
+        middle = np.int64(members[head])
         head += 1
-        for y in range(max(r - 1, 0), min(r + 2, rows)):
-            for x in range(max(c - 1, 0), min(c + 2, cols)):
-                if not taken[y, x] and _is_frontier(grid, y, x):
-                    taken[y, x] = True
-                    cells[tail, 0], cells[tail, 1] = y, x
+        for row in range(-1, 2):
+            for column in range(-1, 2):
+                there = middle + row * wide + column
+                if not taken[there] and _is_frontier(cells, wide, there):
+                    taken[there] = True
+                    members[tail] = there
                     tail += 1
     return tail
+
+
+@kernel
+def _flood(
+    cells: NDArray[np.int8],
+    wide: int,
+    start: int,
+    seen: NDArray[np.bool_],
+    taken: NDArray[np.bool_],
+    members: NDArray[np.int32],
+    ends: NDArray[np.int64],
+) -> int:
+    """Flood the free ``cells`` (n,), rows of ``wide``, and grow each frontier where it is met; how many there are."""
+    queue = np.empty(len(cells), np.int32)
+    queue[0], seen[start], ends[0] = start, True, 0
+    head, tail, count = 0, 1, 0
+    while head < tail:
+        middle = np.int64(queue[head])
+        head += 1
+        for k in range(4):
+            there = middle + (1 if k == 0 else wide if k == 1 else -1 if k == 2 else -wide)
+            if cells[there] == _FREE:
+                if not seen[there]:
+                    seen[there] = True
+                    queue[tail] = there
+                    tail += 1
+            elif cells[there] < 0 and not taken[there]:
+                ends[count + 1] = _grow(cells, wide, taken, members, ends[count], there)
+                count += 1
+    return count
 
 
 @kernel
@@ -111,30 +134,18 @@ def flood_frontiers(
         the last ends (k + 1,).
     """
     rows, cols = grid.shape
-    seen = np.zeros((rows, cols), np.bool_)
-    taken = np.zeros((rows, cols), np.bool_)
-    queue = np.empty((rows * cols, 2), np.int32)
-    cells = np.empty((rows * cols, 2), np.int32)
-    ends = np.zeros(rows * cols + 1, np.int64)
-    queue[0, 0], queue[0, 1] = row, col
-    seen[row, col] = True
-    head, tail, count = 0, 1, 0
-    while head < tail:
-        r, c = queue[head, 0], queue[head, 1]
-        head += 1
-        for dr, dc in ((0, 1), (1, 0), (0, -1), (-1, 0)):
-            y, x = r + dr, c + dc
-            if y < 0 or y >= rows or x < 0 or x >= cols:
-                continue
-            if grid[y, x] == _FREE:
-                if not seen[y, x]:
-                    seen[y, x] = True
-                    queue[tail, 0], queue[tail, 1] = y, x
-                    tail += 1
-            elif grid[y, x] < 0 and not taken[y, x]:
-                ends[count + 1] = _grow(grid, taken, cells, ends[count], y, x)
-                count += 1
-    return seen, cells[: ends[count]].copy(), ends[: count + 1].copy()
+    wide = cols + 2  # a border of occupied cells spares asking whether a neighbour is on the grid
+    cells = np.full((rows + 2, wide), np.int8(100))
+    cells[1:-1, 1:-1] = grid
+    seen, taken = np.zeros((rows + 2, wide), np.bool_), np.zeros(cells.size, np.bool_)
+    members, ends = np.empty(cells.size, np.int32), np.empty(cells.size + 1, np.int64)
+    count = _flood(
+        cells.reshape(cells.size), wide, (row + 1) * wide + col + 1, seen.reshape(cells.size), taken, members, ends
+    )
+    found = np.empty((ends[count], 2), np.int32)
+    for i in range(len(found)):
+        found[i, 0], found[i, 1] = members[i] // wide - 1, members[i] % wide - 1
+    return seen[1:-1, 1:-1].copy(), found, ends[: count + 1].copy()
 
 
 @kernel
@@ -173,7 +184,8 @@ def nearest_cell(mask: NDArray[np.bool_], row: float, col: float) -> tuple[int, 
         away = (r - row) ** 2
         if r < 0 or r >= rows or away > best:
             continue
-        for c in range(cols):
+        reach = math.sqrt(best - away) + 1.0 if best < np.inf else cols + abs(col)  # what is farther away is no nearer
+        for c in range(max(int(col - reach), 0), min(int(col + reach) + 1, cols)):
             if mask[r, c]:
                 d = away + (c - col) ** 2
                 if d < best or (d == best and (r < best_row or (r == best_row and c < best_col))):

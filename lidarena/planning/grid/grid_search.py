@@ -31,7 +31,7 @@ def _estimate(rows: int, cols: int, diagonal: bool) -> float:
 @kernel
 def search_grid(
     cost: NDArray[np.float64], start: int, goal: int, diagonal: bool, cheapest: float
-) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+) -> tuple[NDArray[np.int32], NDArray[np.float64]]:
     """A* from ``start`` to ``goal`` (flat indices) over ``cost`` (rows, cols); ``goal`` = -1 explores everything.
 
     Returns:
@@ -40,11 +40,11 @@ def search_grid(
     """
     rows, cols = cost.shape
     n = rows * cols
-    parent = np.full(n, -1, np.int64)
+    parent = np.full(n, -1, np.int32)
     reached = np.full(n, np.inf)
     keys = np.empty(n)
-    heap = np.empty(n, np.int64)
-    where = np.full(n, -1, np.int64)
+    heap = np.empty(n, np.int32)
+    where = np.full(n, -1, np.int32)
     reached[start] = 0.0
     keys[start] = 0.0
     size = push(heap, where, keys, 0, start)
@@ -74,7 +74,7 @@ def search_grid(
 
 
 @kernel
-def trace(parent: NDArray[np.int64], goal: int, cols: int) -> NDArray[np.int64]:
+def trace(parent: NDArray[np.int32], goal: int, cols: int) -> NDArray[np.int64]:
     """The cells (n, 2) on the way to ``goal``, the start first; ``parent`` is that of ``search_grid``."""
     n = 1
     cell = goal

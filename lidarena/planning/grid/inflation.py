@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError, suggest
-from lidarena.base.jit import kernel
+from lidarena.base.jit import inlined, kernel, leaf
 
 Decay = Literal["exponential", "linear"]
 
@@ -59,36 +59,60 @@ class Inflation:
             raise ConfigError(f"occupied_from = {self.occupied_from}, allowed is 1 .. 100")
 
 
-@kernel
-def cell_distances(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.float32]:
-    """Distance in cells of each cell of (rows, cols) to the nearest occupied one, at most ``reach`` + 1.
+@leaf
+def _step_on(
+    occupied: NDArray[np.int8], occupied_from: int, before: NDArray[np.int32], away: NDArray[np.int32]
+) -> None:
+    """Distances of a row's cells to what is occupied in it or, along the columns, in the rows ``before`` it."""
+    for c in range(away.shape[0]):
+        farther = np.int32(before[c] + np.int32(1))
+        away[c] = np.int32(0) if occupied[c] >= occupied_from else min(away[c], farther)
 
-    Exact: along the rows first, then over the columns the least sum of squares (whole numbers, so that the result is
+
+@leaf
+def _look_along(padded: NDArray[np.int32], reach: int, squares: NDArray[np.int32]) -> None:
+    """Squared distances of a row's cells (cols,), from those along the columns in the middle of ``padded``."""
+    cols = squares.shape[0]
+    for c in range(cols):
+        padded[reach + c] = squares[c] = squares[c] * squares[c]
+    for k in range(1, reach + 1):
+        square, left, right = np.int32(k * k), padded[reach - k :], padded[reach + k :]
+        for c in range(cols):
+            squares[c] = min(squares[c], np.int32(min(left[c], right[c]) + square))
+
+
+@leaf
+def _measure(
+    occupancy: NDArray[np.int8], occupied_from: int, reach: int, padded: NDArray[np.int32], squares: NDArray[np.int32]
+) -> None:
+    """Fill in the squares, whole rows at once, which processors do fastest."""
+    rows = occupancy.shape[0]
+    for r in range(rows):
+        _step_on(occupancy[r], occupied_from, squares[max(r - 1, 0)], squares[r])
+    for r in range(rows - 2, -1, -1):
+        _step_on(occupancy[r], occupied_from, squares[r + 1], squares[r])
+    for r in range(rows):
+        _look_along(padded, reach, squares[r])
+
+
+@kernel
+def squared_distances(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.int32]:
+    """Squared distance in cells of each cell of (rows, cols) to the nearest occupied one, at most (``reach`` + 1)².
+
+    Exact: along the columns first, then over the rows the least sum of squares (whole numbers, so that the result is
     the same to the bit everywhere, which OpenCV's transform is not when its number of threads changes).
     """
-    rows, cols = occupancy.shape
-    one, most = np.float32(1.0), np.float32(reach + 1)
-    along = np.empty((rows, cols), np.float32)
-    for r in range(rows):
-        d = most
-        for c in range(cols):
-            d = np.float32(0.0) if occupancy[r, c] >= occupied_from else min(d + one, most)
-            along[r, c] = d
-        d = most
-        for c in range(cols - 1, -1, -1):
-            d = min(along[r, c], d + one)
-            along[r, c] = d
-        for c in range(cols):
-            along[r, c] *= along[r, c]
-    result = along.copy()
-    for r in range(rows):
-        for k in range(max(-reach, -r), min(reach, rows - 1 - r) + 1):
-            square = np.float32(k * k)
-            for c in range(cols):
-                result[r, c] = min(result[r, c], along[r + k, c] + square)
-        for c in range(cols):
-            result[r, c] = np.sqrt(result[r, c])
-    return result
+    most = np.int32(reach + 1)
+    squares = np.full(occupancy.shape, most, np.int32)
+    padded = np.full(occupancy.shape[1] + 2 * reach, np.int32(most * most), np.int32)
+    _measure(occupancy, occupied_from, reach, padded, squares)
+    return squares
+
+
+@kernel
+def cell_distances(occupancy: NDArray[np.int8], occupied_from: int, reach: int) -> NDArray[np.float32]:
+    """Distance in cells of each cell of (rows, cols) to the nearest occupied one, at most ``reach`` + 1."""
+    return np.sqrt(squared_distances(occupancy, occupied_from, reach).astype(np.float32))
 
 
 def clearance(
@@ -112,6 +136,19 @@ def clearance(
     return result
 
 
+@inlined
+def cost_at(distance: np.float32, lethal_radius: float, radius: float, weight: float, rate: float) -> float:
+    """Cost of a free cell with so much clearance [m]; ``rate`` <= 0 stands for the linear decay."""
+    beyond = distance - lethal_radius
+    if beyond < 0.0:
+        return np.inf
+    if distance >= radius:
+        return 1.0
+    if rate > 0.0:
+        return 1.0 + weight * math.exp(-rate * beyond)
+    return 1.0 + weight * max(1.0 - 1.0 / max(radius - lethal_radius, 1e-9) * beyond, 0.0)
+
+
 @kernel
 def cell_costs(
     occupancy: NDArray[np.int8],
@@ -124,16 +161,12 @@ def cell_costs(
     occupied_from: int,
 ) -> NDArray[np.float64]:
     """Costs of the cells (rows, cols); ``rate`` <= 0 stands for the linear decay."""
-    cost = np.ones(occupancy.shape)
-    slope = 1.0 / max(radius - lethal_radius, 1e-9)
+    cost = np.empty(occupancy.shape)
     for r in range(occupancy.shape[0]):
         for c in range(occupancy.shape[1]):
-            beyond = distance[r, c] - lethal_radius
             unknown = occupancy[r, c] < 0 and not through_unknown
-            if beyond < 0.0 or unknown or occupancy[r, c] >= occupied_from:
-                cost[r, c] = np.inf
-            elif distance[r, c] < radius:
-                cost[r, c] += weight * (math.exp(-rate * beyond) if rate > 0.0 else max(1.0 - slope * beyond, 0.0))
+            closed = unknown or occupancy[r, c] >= occupied_from
+            cost[r, c] = np.inf if closed else cost_at(distance[r, c], lethal_radius, radius, weight, rate)
     return cost
 
 
