@@ -15,6 +15,10 @@ from lidarena.envs.infos import row_of
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "exploration": ("lidarena/Env1-v0", {"slam": "truth", "start": "random", "max_episode_steps": 9}),
     "map": ("lidarena/Env1-v0", {"slam": "truth", "observation": "map", "max_episode_steps": 4}),
+    "choices": (
+        "lidarena/GoalChoice-v0",
+        {"map": "maze:5?width=4&height=4", "start": "random", "slam": "truth", "candidates": 4, "max_episode_steps": 4},
+    ),
     "arena": ("lidarena/Arena-v0", {"density": 0.25, "max_episode_steps": 7, "knowledge": "lidar"}),
     "corridor": (
         "lidarena/CorridorCentral-v0",

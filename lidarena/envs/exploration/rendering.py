@@ -1,5 +1,7 @@
 """The picture of an exploration world: the truth on the left, what the filter believes on the right."""
 
+from collections.abc import Callable, Sequence
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -33,8 +35,22 @@ def path_points(core: ExplorationCore) -> NDArray[np.float64]:
     return np.stack([core.physics.poses[:, 0, :2], core.estimate[:, :2], core.sensors.dead_reckoning[:, 0, :2]], axis=1)
 
 
-def draw_exploration(core: ExplorationCore, recorder: PathRecorder, world: int) -> NDArray[np.uint8]:
-    """Draw one world, RGB (height, width, 3)."""
+def draw_exploration(
+    core: ExplorationCore,
+    recorder: PathRecorder,
+    world: int,
+    more: Callable[[Canvas], None] = lambda belief: None,
+    legend: Sequence[tuple[str, Colour]] = (),
+) -> NDArray[np.uint8]:
+    """Draw one world, RGB (height, width, 3).
+
+    Args:
+        core: The worlds.
+        recorder: Of ``path_points``.
+        world: Which.
+        more: Draws what else there is to show over the belief.
+        legend: Words for that and their colours.
+    """
     plan = core.plans[int(core.plan[world])]
     low_x, low_y, high_x, high_y = plan.bounds
     bounds = (low_x - 0.2, low_y - 0.2, high_x + 0.2, high_y + 0.2)
@@ -51,7 +67,8 @@ def draw_exploration(core: ExplorationCore, recorder: PathRecorder, world: int) 
     belief.line(believed_path, BLUE)
     _draw_scan(belief, core, world, core.estimate[world])
     _draw_belief(belief, core, world)
-    return _compose(truth.image, belief.image, _headline(core, world, plan.name))
+    more(belief)
+    return _compose(truth.image, belief.image, _headline(core, world, plan.name), legend)
 
 
 def _draw_scan(canvas: Canvas, core: ExplorationCore, world: int, pose: NDArray[np.float64]) -> None:
@@ -89,7 +106,9 @@ def _headline(core: ExplorationCore, world: int, name: str) -> str:
     )
 
 
-def _compose(left: NDArray[np.uint8], right: NDArray[np.uint8], headline: str) -> NDArray[np.uint8]:
+def _compose(
+    left: NDArray[np.uint8], right: NDArray[np.uint8], headline: str, legend: Sequence[tuple[str, Colour]]
+) -> NDArray[np.uint8]:
     height, width = left.shape[:2]
     total = max(2 * width + 3 * _GAP, 640)
     image = np.full((height + _HEADER + _FOOTER, total, 3), 255, np.uint8)
@@ -101,7 +120,7 @@ def _compose(left: NDArray[np.uint8], right: NDArray[np.uint8], headline: str) -
     write(image, "what the filter believes", margin + width + _GAP, 34, INK, 0.45)
     words: list[tuple[str, Colour]] = [
         ("true path", GREEN), ("scan", RED), ("estimated path", BLUE), ("odometry alone", ORANGE),
-        ("particles, 2-sigma", MAGENTA),
+        ("particles, 2-sigma", MAGENTA), *legend,
     ]  # fmt: skip
     column = margin
     for text, colour in words:

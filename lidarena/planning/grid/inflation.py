@@ -60,7 +60,7 @@ class Inflation:
 
 
 @leaf
-def _step_on(
+def _pass_on(
     occupied: NDArray[np.int8], occupied_from: int, before: NDArray[np.int32], away: NDArray[np.int32]
 ) -> None:
     """Distances of a row's cells to what is occupied in it or, along the columns, in the rows ``before`` it."""
@@ -70,7 +70,7 @@ def _step_on(
 
 
 @leaf
-def _look_along(padded: NDArray[np.int32], reach: int, squares: NDArray[np.int32]) -> None:
+def _spread_along(padded: NDArray[np.int32], reach: int, squares: NDArray[np.int32]) -> None:
     """Squared distances of a row's cells (cols,), from those along the columns in the middle of ``padded``."""
     cols = squares.shape[0]
     for c in range(cols):
@@ -88,11 +88,11 @@ def _measure(
     """Fill in the squares, whole rows at once, which processors do fastest."""
     rows = occupancy.shape[0]
     for r in range(rows):
-        _step_on(occupancy[r], occupied_from, squares[max(r - 1, 0)], squares[r])
+        _pass_on(occupancy[r], occupied_from, squares[max(r - 1, 0)], squares[r])
     for r in range(rows - 2, -1, -1):
-        _step_on(occupancy[r], occupied_from, squares[r + 1], squares[r])
+        _pass_on(occupancy[r], occupied_from, squares[r + 1], squares[r])
     for r in range(rows):
-        _look_along(padded, reach, squares[r])
+        _spread_along(padded, reach, squares[r])
 
 
 @kernel
@@ -137,7 +137,7 @@ def clearance(
 
 
 @inlined
-def cost_at(distance: np.float32, lethal_radius: float, radius: float, weight: float, rate: float) -> float:
+def cost_at(distance: float, lethal_radius: float, radius: float, weight: float, rate: float) -> float:
     """Cost of a free cell with so much clearance [m]; ``rate`` <= 0 stands for the linear decay."""
     beyond = distance - lethal_radius
     if beyond < 0.0:

@@ -21,8 +21,9 @@ from lidarena.envs.exploration.goal_choice.explorers import (
 )
 from lidarena.envs.exploration.goal_choice.features import FEATURES, Circumstances
 from lidarena.envs.exploration.goal_choice.options import GoalChoiceOptions
+from lidarena.envs.exploration.goal_choice.rendering import draw_choices
 from lidarena.envs.exploration.goal_choice.rewards import REWARDS, GoalChoiceTerms
-from lidarena.envs.exploration.rendering import draw_exploration, path_points
+from lidarena.envs.exploration.rendering import path_points
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
 from lidarena.envs.infos import Info, of_world
 from lidarena.envs.path_recorder import PathRecorder
@@ -213,8 +214,8 @@ class GoalChoiceEpisodes:
         return self.infos()
 
     def picture(self, world: int) -> NDArray[np.uint8] | None:
-        """The truth beside the belief of one world; None unless the worlds are drawn."""
-        return None if self.recorder is None else draw_exploration(self.core, self.recorder, world)
+        """The truth beside the belief of one world, with what to choose from; None unless the worlds are drawn."""
+        return None if self.recorder is None else draw_choices(self.core, self.recorder, self._crew.explorers, world)
 
     def close(self) -> None:
         """Nothing is held."""
