@@ -51,6 +51,8 @@ class GoalChoiceEnv(SingleWorld):
     ## Starting state
 
     As in ``lidarena/Exploration-v0``, driven up to the first choice; the preference is drawn unless it is given.
+    Where there is nothing to choose, as in a room that is seen at a glance, another episode is begun, up to five times;
+    the last then ends in its first step.
 
     ## Episode end
 

@@ -37,6 +37,8 @@ from lidarena.slam.readings import Share
 
 LARGEST = 60.0
 """No feature is larger."""
+_TRIES = 5
+"""Episodes that end before the first choice are begun anew, so often; the last then ends in its first step."""
 
 
 class GoalChoiceEpisodes:
@@ -84,13 +86,15 @@ class GoalChoiceEpisodes:
         """Begin a new episode in each of ``worlds``, up to its first choice."""
         begun = list(worlds)
         with nullcontext() if self._compiled else announced_compilation():
-            while begun:
+            for _ in range(_TRIES):
                 self._begin(begun, generators)
                 active = np.zeros(self.worlds, np.bool_)
                 active[begun] = True
                 self._drive(active.copy(), None)
-                # an episode without a single choice teaches nothing
+                # an episode without a single choice teaches nothing; but a room may be seen at a glance from everywhere
                 begun = np.flatnonzero(active & (self._crew.status != CHOOSES)).tolist()
+                if not begun:
+                    break
 
     def _begin(self, worlds: list[int], generators: Generators) -> None:
         for world in worlds:
