@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, kernel, leaf, take_next
+from lidarena.envs.exploration.frontier_directions import most_of_square
 from lidarena.envs.worker_threads import on_threads
 
 _FADE = 2.0
@@ -75,9 +76,7 @@ def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8], gaps: NDArray[
     for r in range(rows):
         for c in range(columns):
             y, x = 2 * r, 2 * c
-            lower = max(occupancy[y, x], occupancy[y, x + 1])
-            upper = max(occupancy[y + 1, x], occupancy[y + 1, x + 1])
-            most = max(lower, upper)
+            most = most_of_square(occupancy, r, c)
             squares[r, c] = most
             if most <= 0:
                 continue

@@ -23,16 +23,22 @@ _FAR = 2**30
 _UNKNOWN, _FREE, _NARROW, _WALL = -1, 0, 1, 2
 
 
+@inlined
+def most_of_square(occupancy: NDArray[np.int8], r: int, c: int) -> int:
+    """The largest of the 2 × 2 cells that square (r, c) is made of."""
+    y, x = 2 * r, 2 * c
+    lower = max(occupancy[y, x], occupancy[y, x + 1])
+    upper = max(occupancy[y + 1, x], occupancy[y + 1, x + 1])
+    return int(max(lower, upper))
+
+
 @leaf
 def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
     """Make 2 × 2 cells a square: a wall if one is, else free if one is, else unknown; free near a wall is narrow."""
     rows, columns = squares.shape
     for r in range(rows):
         for c in range(columns):
-            y, x = 2 * r, 2 * c
-            lower = max(occupancy[y, x], occupancy[y, x + 1])
-            upper = max(occupancy[y + 1, x], occupancy[y + 1, x + 1])
-            most = max(lower, upper)
+            most = most_of_square(occupancy, r, c)
             squares[r, c] = _WALL if most > 0 else most
     for r in range(rows):
         for c in range(columns):
