@@ -24,7 +24,7 @@ def flat(prefix: str, value: Any) -> dict[str, np.ndarray]:
 def sense_then_filter(core: ExplorationCore, shift: tuple[float, float, float]) -> Callable[..., None]:
     """What the kernel does in one go, in two: the true pose is moved after the sensors were read."""
 
-    def perceive(before: np.ndarray, first: int, last: int) -> None:
+    def perceive(before: np.ndarray, first: int, last: int, active: np.ndarray) -> None:
         assert isinstance(core.estimator, ParticleFilterEstimator)
         sensors, filters = core.sensors, core.estimator.filters
         place = (core.beam, START_CLEARANCE, core.lidar.geometry, core.lidar.directions)
