@@ -73,7 +73,8 @@ class ExplorationEnv(SingleWorld):
     | 110–111 | as 5 and 6 above |
 
     ``"da_slam_entropy"``, ``"sectors_entropy"``, ``"frontier_histogram_entropy"`` and ``"frontier_arcs_entropy"`` hold
-    the entropy of the particles' weights / ln N in place of the completeness, as DA-SLAM's agent for uncertainty sees it.
+    the entropy of the particles' weights / ln N in place of the completeness, as DA-SLAM's agent for uncertainty sees
+    it.
 
     ``observation="map"``: a ``Dict`` of ``map``, ``scan``, ``covariance``, ``state``; see ``MapObserver``. Or an
     observer of one's own, see ``lidarena.envs.observers``.
