@@ -1,6 +1,6 @@
 """Keeping account of the goals of many worlds: which is pursued, since when it comes no nearer, which are given up."""
 
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -61,11 +61,6 @@ def open_accounts(accounts: GoalAccounts, world: int) -> None:
     accounts.has_pursued[world] = False
     accounts.given_up_count[world] = accounts.failure_count[world] = accounts.progress_at[world] = 0
     accounts.arrived_at[world], accounts.shortest[world] = -1, np.inf
-
-
-def arrays_of(accounts: GoalAccounts) -> dict[str, NDArray[Any]]:
-    """Everything that later steps depend on, by name."""
-    return accounts._asdict()
 
 
 @kernel

@@ -1,7 +1,7 @@
 """What drivers of many worlds know and plan, as arrays that lead with (worlds,)."""
 
 import math
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -167,12 +167,3 @@ def forget(drive: Drive, world: int) -> None:
     drive.path_points[world], drive.queue_span[world] = 0, 0
     drive.kept[world], drive.turning[world] = np.inf, -1
     drive.ground.extent[world] = 0
-
-
-def arrays_of(drive: Drive) -> dict[str, NDArray[Any]]:
-    """Everything that later steps depend on, by name."""
-    grounds = {"near": drive.near, "ground": drive.ground}
-    own = {name: array for name, array in drive._asdict().items() if name not in grounds}
-    for name, ground in grounds.items():
-        own |= {f"{name}.{part}": array for part, array in ground._asdict().items()}
-    return own

@@ -1,6 +1,6 @@
 import numpy as np
 
-from lidarena.planning.driving.state import arrays_of, forget
+from lidarena.planning.driving.state import forget
 from tests.planning.driving.worlds import hired, make_world
 
 
@@ -14,4 +14,4 @@ def test_what_is_forgotten_in_one_world_leaves_nothing_behind() -> None:
     fresh = hired(env, info)[2].drive
     assert not drive.has_goal[0] and drive.turning[0] == -1 and np.isinf(drive.kept[0])
     for name in ("path_points", "queue_span", "hit_counts", "newest"):
-        assert np.array_equal(arrays_of(drive)[name], arrays_of(fresh)[name])
+        assert np.array_equal(getattr(drive, name), getattr(fresh, name))
