@@ -179,6 +179,11 @@ class StepRewards:
         for index in map(tuple, np.argwhere(chosen).tolist()):
             self._previous[index] = info_of(index)
 
+    def tell(self, facts: Info) -> Info:
+        """Add to what a step tells what it was worth, as ``reward_terms``; returns the same dictionary."""
+        facts["reward_terms"] = {name: term.copy() for name, term in self.terms.items()}
+        return facts
+
     def add_up(self, weighed: dict[str, Floats], actions: Any, asked: NDArray[np.bool_] | None = None) -> Floats:
         """Return the rewards of a step.
 

@@ -5,6 +5,7 @@ the estimators of this package: ``BatchEstimator``.
 """
 
 from abc import ABC, abstractmethod
+from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
@@ -151,7 +152,7 @@ class BatchEstimator(ABC):
         clear_map(self.maps, world, plan, origin)
         self.estimate[world] = pose
 
-    @property
+    @cached_property
     def geometry(self) -> ScanGeometry:
         """How its scans and grids are laid out."""
         settings = self.settings

@@ -104,9 +104,7 @@ class ArenaEpisodes:
 
     def infos(self) -> Info:
         """What every step tells, as arrays over worlds."""
-        facts = self._facts()
-        facts["reward_terms"] = {name: term.copy() for name, term in self._rewards.terms.items()}
-        return facts
+        return self._rewards.tell(self._facts())
 
     def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
         """What every step tells, as it is now; one world's part by its number."""

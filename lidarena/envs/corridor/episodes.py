@@ -166,7 +166,7 @@ class CorridorEpisodes:
 
     def robot_infos(self) -> Info:
         """What every step tells each robot, as arrays over (worlds, robots)."""
-        return self._robot_facts() | {"reward_terms": {name: term.copy() for name, term in self._rewards.terms.items()}}
+        return self._rewards.tell(self._robot_facts())
 
     def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
         """What every step tells, as it is now; one robot's part by the numbers of its world and its own."""

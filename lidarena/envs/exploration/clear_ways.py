@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, kernel, leaf, take_next
-from lidarena.envs.exploration.frontier_directions import most_of_square
+from lidarena.envs.exploration.frontier_directions import most_of_square, shape_in_squares
 from lidarena.envs.worker_threads import on_threads
 
 _FADE = 2.0
@@ -263,9 +263,8 @@ def _find_ways(
     out: NDArray[np.float32],
     counter: NDArray[np.int64],
 ) -> None:
-    rows, columns = occupancy.shape[1:]
-    squares = np.empty((rows // 2, columns // 2), np.int8)
-    gaps = np.empty((rows // 2, columns // 2), np.int32)
+    squares = np.empty(shape_in_squares(occupancy), np.int8)
+    gaps = np.empty(squares.shape, np.int32)
     while True:
         w = take_next(counter)
         if w >= out.shape[0]:

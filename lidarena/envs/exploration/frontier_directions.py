@@ -32,6 +32,12 @@ def most_of_square(occupancy: NDArray[np.int8], r: int, c: int) -> int:
     return int(max(lower, upper))
 
 
+@inlined
+def shape_in_squares(occupancy: NDArray[np.int8]) -> tuple[int, int]:
+    """Rows and columns of squares in maps (worlds, rows, columns); an odd last row or column of cells is left out."""
+    return occupancy.shape[1] // 2, occupancy.shape[2] // 2
+
+
 @leaf
 def _pool(occupancy: NDArray[np.int8], squares: NDArray[np.int8]) -> None:
     """Make 2 × 2 cells a square: a wall if one is, else free if one is, else unknown; free near a wall is narrow."""
@@ -124,8 +130,7 @@ def _feel(
     out: NDArray[np.float32],
     counter: NDArray[np.int64],
 ) -> None:
-    rows, columns = occupancy.shape[1:]
-    squares = np.empty((rows // 2, columns // 2), np.int8)
+    squares = np.empty(shape_in_squares(occupancy), np.int8)
     while True:
         w = take_next(counter)
         if w >= out.shape[0]:

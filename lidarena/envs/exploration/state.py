@@ -48,6 +48,7 @@ class ExplorationCore:
         self.physics = Physics(worlds, spec=self.robot)
         self._noise = OdometryNoise().scaled(options.odometry_noise)
         self._allocate(worlds)
+        self._sensing = self._make_sensing()
         self.estimator = self._make_estimator()
         self.maps, self.estimate = self.estimator.maps, self.estimator.estimate
         self.covariance, self.d_optimality = self.estimator.covariance, self.estimator.d_optimality
@@ -58,6 +59,14 @@ class ExplorationCore:
         self.streams = np.zeros((worlds, 4), np.uint64)
         self._near, self._all = np.zeros(worlds, np.bool_), np.ones(worlds, np.bool_)
         self.sensors = empty_sensors(worlds, self.beam.beams)
+
+    def _make_sensing(self) -> Sensing:
+        """What every step's sensing reads and writes: arrays that stay the same ones, so that it is made once."""
+        return Sensing(
+            np.zeros_like(self.physics.poses), self.physics.poses, self.plan, self.streams, self._noise, self.beam,
+            self.robot.bumper, self.lidar.geometry, self.lidar.directions, self.sensors,
+            self.options.decision_period,
+        )  # fmt: skip
 
     def _make_estimator(self) -> BatchEstimator:
         wanted = self.floors.wanted
@@ -77,7 +86,8 @@ class ExplorationCore:
         sensors.since_scan[world] = first_scan(self.options.decision_period, self.beam)
         sensors.path_length[world] = sensors.true_path_length[world] = 0.0
         self.estimator.start(world, plan, self.floors.coverage(plan).origin, self.physics.poses[world, 0], rng)
-        self._perceive(self.physics.poses, world, world + 1, self._all)
+        self._sensing.before[world] = self.physics.poses[world]
+        self._perceive(world, world + 1, self._all)
 
     def _start_pose(self, plan: int, rng: np.random.Generator) -> tuple[float, float, float]:
         if self.options.start != "random":
@@ -93,21 +103,16 @@ class ExplorationCore:
             commands: (worlds, 2) speed [m/s] and turn rate [rad/s].
             active: (worlds,) the others stay as they are; None: all are.
         """
-        before = self.physics.poses.copy()
+        self._sensing.before[:] = self.physics.poses
         driven, period = commands[:, None, :], self.options.decision_period
         around, directions = self.bumper.ranges(self.sensors), self.bumper.directions
         may_touch(driven, period, self.robot.radius, around, directions, self._near)
         self.physics.advance(driven, period, self._near, active)
-        self._perceive(before, 0, self.worlds, self._all if active is None else active)
+        self._perceive(0, self.worlds, self._all if active is None else active)
 
-    def _perceive(self, before: NDArray[np.float64], first: int, last: int, active: NDArray[np.bool_]) -> None:
+    def _perceive(self, first: int, last: int, active: NDArray[np.bool_]) -> None:
         """Read the sensors of those of worlds first … last - 1 that are active, and run their SLAM."""
-        sensing = Sensing(
-            before, self.physics.poses, self.plan, self.streams, self._noise, self.beam,
-            self.robot.bumper, self.lidar.geometry, self.lidar.directions, self.sensors,
-            self.options.decision_period,
-        )  # fmt: skip
-        estimator, counter = self.estimator, np.array([first])
+        sensing, estimator, counter = self._sensing, self.estimator, np.array([first])
         on_threads(
             last - first, lambda thread: estimator.sense_and_estimate(sensing, Share(counter, last, thread, active))
         )

@@ -1,6 +1,5 @@
 """Ways that keep clear: against a slow search, through gaps wide and narrow, in sight, and turning with the robot."""
 
-import heapq
 import math
 
 import numpy as np
@@ -9,11 +8,12 @@ from numpy.typing import NDArray
 
 from lidarena.envs.exploration.clear_ways import clear_ways
 from lidarena.envs.exploration.state import RESOLUTION
+from tests.envs.exploration.edge_search import UNKNOWN, WALL, Square, lengths_to_the_edge, squares_of
 
 SECTORS, CONTACT, RADIUS = 36, 0.12, 1.0 / 6.0
 ROBOT = (CONTACT, RADIUS)
 SIDE = 2 * RESOLUTION
-UNKNOWN, FREE, WALL = -1, 0, 100
+FREE = 0
 Pose = tuple[float, float, float]
 
 
@@ -25,41 +25,26 @@ def bearing(ways: NDArray[np.float32]) -> float:
     return math.degrees(math.atan2(ways[SECTORS + 1] - 0.5, ways[SECTORS] - 0.5))
 
 
-def way_lengths(grid: NDArray[np.int8], start: tuple[int, int]) -> dict[tuple[int, int], int]:
+def way_lengths(grid: NDArray[np.int8], start: Square) -> dict[Square, int]:
     """Lengths of the shortest clear ways to the squares of the edge, in half squares."""
-    squares = grid.reshape(grid.shape[0] // 2, 2, grid.shape[1] // 2, 2).max(axis=(1, 3)).astype(np.int64)
+    squares = squares_of(grid)
     walls = (np.argwhere(grid == WALL) + 0.5) * RESOLUTION
 
-    def room(square: tuple[int, int]) -> float:
+    def room(square: Square) -> float:
         middle = (np.array(square) + 0.5) * SIDE
         near = np.abs(walls - middle).max(axis=1) < 4.5 * SIDE
         return float(np.hypot(*(walls[near] - middle).T).min()) if near.any() else math.inf
 
     rooms = {square: room(square) for square in np.ndindex(squares.shape)}
-    done: set[tuple[int, int]] = set()
-    edge: dict[tuple[int, int], int] = {}
-    queue = [(0, start)]
-    while queue:
-        length, here = heapq.heappop(queue)
-        if here in done:
-            continue
-        done.add(here)
-        if squares[here] == UNKNOWN and here != start:
-            edge[here] = length
-            continue
-        for there in np.ndindex(squares.shape):
-            straight = abs(there[0] - here[0]) + abs(there[1] - here[1]) == 1
-            diagonal = abs(there[0] - here[0]) == 1 == abs(there[1] - here[1])
-            unknown = squares[there] == UNKNOWN
-            if not (straight or diagonal) or squares[there] == WALL or (diagonal and unknown):
-                continue
-            if unknown and rooms[there] < CONTACT + RADIUS:
-                continue
-            if rooms[there] < CONTACT + 0.07 <= rooms[here]:
-                continue
-            times = next((n for n, more in ((1, 0.23), (2, 0.15), (4, 0.07)) if rooms[there] >= CONTACT + more), 8)
-            heapq.heappush(queue, (length + (2 if straight else 3) * times, there))
-    return edge
+
+    def times(here: Square, there: Square) -> int | None:
+        if squares[there] == UNKNOWN and rooms[there] < CONTACT + RADIUS:
+            return None
+        if rooms[there] < CONTACT + 0.07 <= rooms[here]:
+            return None
+        return next((n for n, more in ((1, 0.23), (2, 0.15), (4, 0.07)) if rooms[there] >= CONTACT + more), 8)
+
+    return lengths_to_the_edge(squares, start, times)
 
 
 @pytest.mark.parametrize("seed", range(5))

@@ -1,6 +1,5 @@
 """The compass of the edge: against a slow search, around corners, in sight, and that it turns with the robot."""
 
-import heapq
 import math
 
 import numpy as np
@@ -9,10 +8,11 @@ from numpy.typing import NDArray
 
 from lidarena.envs.exploration.frontier_directions import frontier_histogram, mean_direction
 from lidarena.envs.exploration.state import RESOLUTION
+from tests.envs.exploration.edge_search import UNKNOWN, WALL, Square, lengths_to_the_edge, squares_of
 
 SECTORS = 36
 SIDE = 2 * RESOLUTION
-UNKNOWN, FREE, WALL = -1, 0, 100
+FREE = 0
 
 
 def felt(
@@ -24,33 +24,16 @@ def felt(
     return frontier_histogram(grid[None], np.array([origin]), np.array([pose]), ranges, RESOLUTION)[0]
 
 
-def squares_of(grid: NDArray[np.int8]) -> NDArray[np.int64]:
-    return grid.reshape(grid.shape[0] // 2, 2, grid.shape[1] // 2, 2).max(axis=(1, 3)).astype(np.int64)
-
-
-def way_lengths(grid: NDArray[np.int8], start: tuple[int, int]) -> dict[tuple[int, int], int]:
+def way_lengths(grid: NDArray[np.int8], start: Square) -> dict[Square, int]:
     """Lengths of the shortest ways to the squares of the edge, in half squares."""
     squares = squares_of(grid)
     walls = np.argwhere(squares == WALL)
-    done: dict[tuple[int, int], int] = {}
-    edge: dict[tuple[int, int], int] = {}
-    queue = [(0, start)]
-    while queue:
-        length, here = heapq.heappop(queue)
-        if here in done:
-            continue
-        done[here] = length
-        if squares[here] == UNKNOWN and here != start:
-            edge[here] = length
-            continue
-        for there in np.ndindex(squares.shape):
-            straight = abs(there[0] - here[0]) + abs(there[1] - here[1]) == 1
-            diagonal = abs(there[0] - here[0]) == 1 == abs(there[1] - here[1])
-            if not (straight or diagonal) or squares[there] == WALL or (diagonal and squares[there] == UNKNOWN):
-                continue
-            narrow = squares[there] == FREE and bool((np.abs(walls - there).max(axis=1) <= 2).any())
-            heapq.heappush(queue, (length + (2 if straight else 3) * (3 if narrow else 1), there))
-    return edge
+
+    def times(here: Square, there: Square) -> int:
+        narrow = squares[there] == FREE and bool((np.abs(walls - there).max(axis=1) <= 2).any())
+        return 3 if narrow else 1
+
+    return lengths_to_the_edge(squares, start, times)
 
 
 @pytest.mark.parametrize("seed", range(4))
