@@ -1,0 +1,148 @@
+"""A mapper that a robot's own program can call at each scan."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.errors import EstimatorError
+from lidarena.slam.graph.front_end import FrontEnd, FrontEndParameters
+from lidarena.slam.graph.surface_points import BeamFan
+from lidarena.slam.planar import compose, inverse
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MapParameters:
+    """Settings of mapping by a graph of poses; the defaults serve robots in buildings.
+
+    Attributes:
+        front_end: How scans are matched.
+    """
+
+    front_end: FrontEndParameters = field(default_factory=FrontEndParameters)
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A place that the robot came back to.
+
+    Attributes:
+        from_scan: The later scan.
+        to_scan: The earlier one.
+        transform: (3,) pose of the later seen from the earlier, as their surfaces fit.
+        residual: How far the finished map disagrees [m].
+        kept: Whether the map was made with it.
+    """
+
+    from_scan: int
+    to_scan: int
+    transform: Floats
+    residual: float
+    kept: bool
+
+
+@dataclass(frozen=True)
+class PoseGraph:
+    """Poses and what was measured between them.
+
+    Attributes:
+        nodes: (K, 3) poses of the laser.
+        scans: (K,) which scans they are of.
+        pairs: (E, 2) nodes from and to.
+        motions: (E, 3) pose of the second seen from the first.
+        information: (E, 3, 3) inverse covariances.
+    """
+
+    nodes: Floats
+    scans: NDArray[np.int64]
+    pairs: NDArray[np.int64]
+    motions: Floats
+    information: Floats
+
+
+@dataclass(frozen=True)
+class MapResult:
+    """What a mapper made of everything that it was given.
+
+    Attributes:
+        poses: (S, 3) of the robot at every scan.
+        loops: The loops that it found.
+        graph: Its graph.
+        doubts: Sentences on where the map may be wrong.
+    """
+
+    poses: Floats
+    loops: list[Loop]
+    graph: PoseGraph
+    doubts: list[str]
+
+
+class Mapper:
+    """Maps while it is given scans.
+
+    Args:
+        angles: (B,) the beams' directions, evenly spaced [rad].
+        max_range: Ranges from here on are no returns [m].
+        mount: (3,) where the laser sits on the robot [m, m, rad].
+        parameters: Settings.
+
+    Attributes:
+        pose: (3,) where the robot is now.
+
+    Raises:
+        EstimatorError: The beams are fewer than two or unevenly spaced.
+    """
+
+    def __init__(
+        self,
+        angles: Floats,
+        max_range: float,
+        mount: Sequence[float] | Floats = (0.0, 0.0, 0.0),
+        parameters: MapParameters | None = None,
+    ) -> None:
+        steps = np.diff(angles)
+        if len(angles) < 2 or not np.allclose(steps, steps[0], atol=1e-3) or abs(float(steps.mean())) < 1e-6:
+            raise EstimatorError(f"the {len(angles)} beams are not evenly spaced; at least two are needed")
+        self.parameters = parameters or MapParameters()
+        fan = BeamFan(float(angles[0]), float(steps.mean()), len(angles))
+        self.front = FrontEnd(fan, self.parameters.front_end)
+        self.max_range, self.mount = max_range, np.asarray(mount, np.float64)
+        self.pose = np.zeros(3)
+        self.times: list[float] = []
+
+    def add(self, time: float, odometry_pose: Floats, ranges: NDArray[np.float32]) -> Floats:
+        """Take in a scan.
+
+        Args:
+            time: Of the scan [s].
+            odometry_pose: (3,) where the robot is by its wheels.
+            ranges: (B,) [m]; 0, NaN and what is not below ``max_range`` are no returns.
+
+        Returns:
+            (3,) where the robot is.
+
+        Raises:
+            EstimatorError: The shapes are wrong or the odometry is not finite.
+        """
+        odometry, scan = np.asarray(odometry_pose, np.float64), np.asarray(ranges, np.float32)
+        if scan.shape != (self.front.fan.beams,):
+            raise EstimatorError(f"a scan has shape {scan.shape}; ({self.front.fan.beams},) is needed")
+        if odometry.shape != (3,) or not np.isfinite(odometry).all():
+            raise EstimatorError(f"the odometry is {odometry_pose}; three finite numbers x, y, theta are needed")
+        scan = np.where((scan > 0.0) & (scan < self.max_range * (1.0 - 1e-4)), scan, np.float32(0.0)).astype(np.float32)
+        self.times.append(time)
+        self.front.add(compose(odometry, self.mount), scan)
+        self.pose = compose(self.front.poses[-1], inverse(self.mount))
+        return self.pose
+
+    def finish(self) -> MapResult:
+        """Make the best of everything so far; more scans may follow."""
+        front = self.front
+        poses = np.array(front.poses)
+        scans = np.array(front.keyframes, np.int64)
+        nodes = poses[scans]
+        graph = PoseGraph(nodes, scans, np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3)))
+        return MapResult(compose(poses, inverse(self.mount)), [], graph, [])

@@ -1,0 +1,77 @@
+"""A recorded log mapped by a graph of poses."""
+
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.slam.graph.mapper import Loop, MapParameters, Mapper, PoseGraph
+from lidarena.slam.logs.carmen import RecordedLog
+from lidarena.slam.logs.replay import trace_map
+from lidarena.slam.logs.trajectory import Trajectory, in_order, spread_correction
+from lidarena.world.map_server import OccupancyMap
+
+Progress = Callable[[int, int], None]
+"""Called with the scans that are done and the scans of the log."""
+
+
+@dataclass(frozen=True)
+class LogMap:
+    """What was made of a log.
+
+    Attributes:
+        trajectory: The robot's pose at every reading of the log.
+        readings: (K,) which readings are nodes of the graph.
+        poses: (K, 3) the laser's poses then.
+        map: The occupancy grid of the nodes' scans.
+        loops: The loops that were found; their scans are numbered as the log's.
+        graph: Nodes and edges.
+        doubts: Sentences on where the map may be wrong.
+        seconds: Processor time, without what it took to compile.
+    """
+
+    trajectory: Trajectory
+    readings: NDArray[np.int64]
+    poses: NDArray[np.float64]
+    map: OccupancyMap
+    loops: list[Loop]
+    graph: PoseGraph
+    doubts: list[str]
+    seconds: float
+
+
+def map_log(log: RecordedLog, parameters: MapParameters | None = None, progress: Progress | None = None) -> LogMap:
+    """Map a recorded log, on one core; the same log gives the same bits.
+
+    The map and the trajectory are in the frame of the log's odometry at its first scan.
+
+    Args:
+        log: As `lidarena.slam.logs.carmen.read_log` gives it.
+        parameters: Settings.
+        progress: Told now and then how far it is.
+
+    Raises:
+        EstimatorError: The beams are not evenly spaced.
+        MapError: The robot went farther than any map may reach.
+    """
+    began = time.process_time()
+    mapper, total = Mapper(log.angles, log.max_range, log.mount, parameters), len(log.scan_readings)
+    for k, reading in enumerate(log.scan_readings):
+        mapper.add(float(log.times[reading]), log.odometry[reading], log.ranges[k])
+        if progress is not None and (k % 50 == 49 or k == total - 1):
+            progress(k + 1, total)
+    result = mapper.finish()
+    seconds = time.process_time() - began
+    graph = result.graph
+    return LogMap(
+        trajectory=in_order(log.times, spread_correction(log.odometry, log.scan_readings, result.poses)),
+        readings=log.scan_readings[graph.scans],
+        poses=graph.nodes,
+        map=trace_map(log, graph.scans, graph.nodes),
+        loops=result.loops,
+        graph=graph,
+        doubts=result.doubts,
+        seconds=seconds,
+    )

@@ -1,0 +1,32 @@
+"""Scan after scan: what wheels get wrong is mended, and what cannot be matched is told."""
+
+import numpy as np
+
+from lidarena.slam.graph.front_end import FrontEnd
+from lidarena.slam.planar import between
+from tests.slam.graph.test_point_to_line import FAN, room_ranges
+
+
+def test_a_turn_that_slips_by_thirty_degrees_is_mended() -> None:
+    front = FrontEnd(FAN)
+    front.add(np.zeros(3), room_ranges((0.5, 0.3, 0.0)))
+    for k in range(1, 5):
+        front.add(np.array([0.0, 0.0, 0.2 * k]), room_ranges((0.5, 0.3, 0.2 * k)))
+    front.add(np.array([0.0, 0.0, 0.8 + 0.52]), room_ranges((0.5, 0.3, 0.8)))
+    np.testing.assert_allclose(between(front.poses[0], front.poses[-1]), [0.0, 0.0, 0.8], atol=0.02)
+    assert not any(front.held)
+
+
+def test_keyframes_are_spaced_by_way_and_turn() -> None:
+    front = FrontEnd(FAN)
+    kept = [front.add(np.array([x, 0.0, 0.0]), room_ranges((x, 0.0, 0.0))) for x in (0.0, 0.1, 0.2, 0.3, 0.4)]
+    assert kept == [True, False, False, True, False] and front.keyframes == [0, 3]
+    assert front.add(np.array([0.4, 0.0, 0.2]), room_ranges((0.4, 0.0, 0.2)))
+
+
+def test_a_scan_of_another_place_is_not_believed() -> None:
+    front = FrontEnd(FAN)
+    front.add(np.zeros(3), room_ranges((0.0, 0.0, 0.0), 20.0, 20.0))
+    front.add(np.array([0.1, 0.0, 0.0]), room_ranges((0.0, 0.0, 0.0), 4.0, 4.0))
+    assert front.held == [False, True]
+    np.testing.assert_allclose(front.poses[1], [0.1, 0.0, 0.0])

@@ -1,0 +1,23 @@
+"""Recorded logs mapped by a graph of poses."""
+
+import numpy as np
+
+from lidarena.slam.logs.mapping import map_log
+from lidarena.slam.logs.relations import relation_errors
+from tests.slam.drive import ring
+from tests.slam.logs.recorded import LAP, record, relations_of, way
+
+TRUTH = way(LAP)
+LOG = record(ring(), TRUTH, drift=1.0)
+
+
+def test_every_reading_has_a_pose_that_fits_the_truth() -> None:
+    told = []
+    result = map_log(LOG, progress=lambda done, total: told.append((done, total)))
+    assert told[-1] == (len(LOG.scan_readings),) * 2
+    assert result.trajectory.poses.shape == (len(LOG.times), 3)
+    errors = relation_errors(result.trajectory.times, result.trajectory.poses, relations_of(LOG, TRUTH))
+    assert errors.translation.mean() < 0.03 and np.degrees(errors.rotation.mean()) < 0.3
+    assert result.poses.shape == (len(result.readings), 3)
+    assert np.isin(result.readings, LOG.scan_readings).all()
+    assert (result.map.occupancy == 100).sum() > 100
