@@ -1,7 +1,8 @@
 """CARMEN logs: what a robot's wheels and its laser reported, line by line (gzip too), read and written.
 
 Read are ``ODOM``, ``FLASER`` (the old message of a front laser) and ``ROBOTLASER1`` (the new one, which tells its own
-angles); ``PARAM robot_front_laser_max`` tells which ranges are no returns. Other messages are passed over.
+angles), and of the ``PARAM`` lines which ranges are no returns, how wide the front laser looks and where it sits. Other
+messages are passed over, among them ``RLASER``, a second laser that looks back.
 """
 
 import gzip
@@ -16,86 +17,60 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.errors import LidarenaError
 from lidarena.base.files import write_bytes
+from lidarena.slam.logs.assembly import Assembly, RawScan
+from lidarena.slam.logs.beams import BeamLayout
+from lidarena.slam.logs.recorded_log import LogError, LogOptions, RecordedLog
 from lidarena.slam.planar import between
 
-CLOCK_SLACK = 1.0
-"""How far back the clock may jump from one reading to the next [s]. Clocks of real logs stutter (Intel's goes back by
-up to 0.9 s, 629 times); more than this is another recording."""
+__all__ = ["LogError", "RecordedLog", "read_log", "save_log"]
+
 _GZIP = b"\x1f\x8b"
 _KEYWORD = re.compile(r"[A-Z][A-Z0-9_]*\Z")
 _MAX_BEAMS = 20_000
 _PLANET = 1e8
 """No robot's odometry says more, in metres or radians."""
-_FARTHEST = float(np.finfo(np.float32).max)
-"""Ranges are kept in single precision, where a larger one would be infinite [m]."""
-_MOUNT_SPREAD = 0.02
-"""A laser whose pose on the robot varies by more than this [m, rad] is not bolted to it: some logs store a corrected
-pose there."""
+_HALF_TURN_BEAMS = 361
+"""With more beams than these a ``FLASER`` is not taken to look over the half turn in front."""
 
 
-class LogError(LidarenaError):
-    """A recorded log that is missing, torn or contradicts itself, or relations that are not this log's."""
-
-
-@dataclass(frozen=True)
-class RecordedLog:
-    """A log of ``R`` readings, ``S`` of which came with a scan of ``B`` beams.
-
-    Attributes:
-        name: Of the file.
-        times: (R,) time stamps in the order of the log [s].
-        odometry: (R, 3) the robot's pose by its wheels alone [m, m, rad].
-        scan_readings: (S,) which readings have a scan, ascending.
-        ranges: (S, B) float32 [m].
-        angles: (B,) the beams' directions in the laser's frame, counter-clockwise [rad].
-        max_range: Ranges from here on are no returns [m].
-        mount: (3,) where the laser sits on the robot [m, m, rad].
-        skipped: Torn lines that were left out because the caller asked for it.
-    """
-
-    name: str
-    times: NDArray[np.float64]
-    odometry: NDArray[np.float64]
-    scan_readings: NDArray[np.int64]
-    ranges: NDArray[np.float32]
-    angles: NDArray[np.float64]
-    max_range: float
-    mount: NDArray[np.float64]
-    skipped: int = 0
-
-
-def read_log(path: str | os.PathLike[str], skip_torn: bool = False) -> RecordedLog:
+def read_log(path: str | os.PathLike[str], skip_torn: bool = False, options: LogOptions | None = None) -> RecordedLog:
     """Read a CARMEN log.
 
     Args:
         path: The file, plain or gzip.
         skip_torn: Leave torn lines out instead of refusing the log.
+        options: What the file does not tell.
 
     Raises:
         LogError: The file is missing, not text, not gzip though its name says so, cut short; a line is torn; there is
-            no scan; the number or angles of the beams change; or time runs back by more than ``CLOCK_SLACK``.
+            no scan; a ``FLASER`` has more than 361 beams and nothing tells its field of view; or too many stamps are
+            wrong.
     """
+    wanted = options or LogOptions(skip_torn)
     where = f"log {os.fspath(path)!r}"
-    entries = _Entries()
-    for number, line in enumerate(_lines(Path(path), where), start=1):
+    entries = _Entries(wanted)
+    torn_before = ""
+    for number, line in enumerate(_lines(Path(path), where, entries), start=1):
+        if torn_before:
+            raise LogError(torn_before)
         words = line.split()
         if not words or words[0].startswith("#"):
             continue
         try:
             entries.enter(words)
         except _TornLineError as torn:
-            if not skip_torn:
-                raise LogError(
-                    f"line {number} of {where} is torn: {torn}; mend it, or leave torn lines out (--skip-torn)"
-                ) from None
-            entries.skipped += 1
-        except _ConflictError as conflict:
-            raise LogError(f"line {number} of {where} {conflict}") from None
-    if not entries.ranges:
+            if wanted.skip_torn or skip_torn:
+                entries.assembly.skipped += 1
+                continue
+            torn_before = f"line {number} of {where} is torn: {torn}; mend it, or leave torn lines out (--skip-torn)"
+    if torn_before:
+        if not (wanted.keep_cut and entries.assembly.scans):
+            raise LogError(torn_before)
+        entries.assembly.notes.append(f"{where} is cut off in line {number}; what stands before it is kept")
+    if not entries.assembly.scans:
         raise LogError(f"{where} has no scans; lines that begin with FLASER or ROBOTLASER1 are needed")
-    return entries.log(Path(path).name)
+    return entries.assembly.log(Path(path).name, where, wanted)
 
 
 def save_log(path: str | Path, log: RecordedLog) -> Path:
@@ -127,110 +102,83 @@ class _TornLineError(ValueError):
     """A line that is no whole message."""
 
 
-class _ConflictError(ValueError):
-    """A whole message that contradicts the ones before it."""
-
-
-@dataclass(frozen=True)
-class _Scan:
-    """Ranges [m], the first beam's angle and the step to the next [rad], the longest range if told, the mount."""
-
-    kind: str
-    ranges: NDArray[np.float64]
-    start: float
-    step: float
-    longest: float = math.inf
-    mount: NDArray[np.float64] | None = None
-
-    def __str__(self) -> str:
-        return f"{len(self.ranges)} beams {math.degrees(self.step):.4g}° apart ({self.kind})"
-
-    def like(self, other: "_Scan") -> bool:
-        """Whether both come from one laser."""
-        same = self.kind == other.kind and len(self.ranges) == len(other.ranges)
-        return same and abs(self.start - other.start) < 1e-3 and abs(self.step - other.step) < 1e-4
-
-
-_Message = tuple[float, Sequence[float], _Scan | None]
-"""Time stamp [s], the robot's pose by its wheels, and the scan if there is one."""
-
-
 @dataclass
 class _Entries:
-    """What has been read so far."""
+    """What has been read so far, and what ``PARAM`` lines told of the front laser.
 
-    times: list[float] = field(default_factory=list)
-    odometry: list[Sequence[float]] = field(default_factory=list)
-    scan_readings: list[int] = field(default_factory=list)
-    ranges: list[NDArray[np.float64]] = field(default_factory=list)
-    mounts: list[NDArray[np.float64]] = field(default_factory=list)
-    first: _Scan | None = None
-    longest: float = math.inf
-    latest: float = -math.inf
-    skipped: int = 0
+    Attributes:
+        options: The user's.
+        field_of_view: [rad].
+        resolution: Of its beams [rad].
+    """
+
+    options: LogOptions
+    assembly: Assembly = field(default_factory=Assembly)
+    field_of_view: float | None = None
+    resolution: float | None = None
 
     def enter(self, words: list[str]) -> None:
         """Enter a line, wholly or not at all."""
         if words[0] == "PARAM":
-            if len(words) > 2 and words[1] in ("robot_front_laser_max", "robot_frontlaser_max"):
-                self.longest = min(self.longest, _numbers(words[2:3], 1, least=1e-3)[0])
+            if len(words) > 2:
+                self._parameter(words[1], words[2:3])
+        elif words[0] == "FLASER":
+            self.assembly.add(*_flaser(words, self._front_layout))
         elif words[0] in _READERS:
-            self._enter(*_READERS[words[0]](words))
+            self.assembly.add(*_READERS[words[0]](words))
         elif not _KEYWORD.match(words[0]):
             raise _TornLineError(f"it begins with {words[0][:20]!r}, which is no message")
 
-    def _enter(self, time: float, pose: Sequence[float], scan: _Scan | None) -> None:
-        if time < self.latest - CLOCK_SLACK:
-            back = self.latest - time
-            raise _ConflictError(f"is {back:.3g} s before a reading above it; time must not run backwards")
-        if scan is not None:
-            self.first = self.first or scan
-            if not scan.like(self.first):
-                raise _ConflictError(f"has {scan} after scans of {self.first}; all scans must be alike")
-            self.longest = min(self.longest, scan.longest)
-            self.scan_readings.append(len(self.times))
-            self.ranges.append(scan.ranges)
-            if scan.mount is not None:
-                self.mounts.append(scan.mount)
-        self.latest = max(self.latest, time)
-        self.times.append(time)
-        self.odometry.append(pose)
+    def _parameter(self, name: str, value: list[str]) -> None:
+        if name in ("robot_front_laser_max", "robot_frontlaser_max"):
+            self.assembly.longest = min(self.assembly.longest, _numbers(value, 1, least=1e-3)[0])
+        elif name in ("robot_frontlaser_offset", "robot_front_laser_offset"):
+            self.assembly.mount_told = np.array([_numbers(value, 1, -100.0, 100.0)[0], 0.0, 0.0])
+        elif name in ("laser_front_laser_fov", "robot_front_laser_fov"):
+            self.field_of_view = _radians(_numbers(value, 1, 1e-3, 360.001)[0], 6.3)
+        elif name in ("laser_front_laser_resolution", "robot_front_laser_resolution"):
+            self.resolution = _radians(_numbers(value, 1, 1e-5, 90.0)[0], 0.03)
 
-    def log(self, name: str) -> RecordedLog:
-        """Everything as arrays."""
-        assert self.first is not None
-        ranges = np.array(self.ranges, np.float32)
-        # where nothing tells the longest range, the largest that occurs stands for it
-        longest = self.longest if math.isfinite(self.longest) else max(float(ranges.max()), 1.0)
-        return RecordedLog(
-            name=name,
-            times=np.array(self.times),
-            odometry=np.array(self.odometry, np.float64),
-            scan_readings=np.array(self.scan_readings, np.int64),
-            ranges=ranges,
-            angles=np.asarray(self.first.start + self.first.step * np.arange(ranges.shape[1]), np.float64),
-            max_range=longest,
-            mount=_mount(self.mounts),
-            skipped=self.skipped,
-        )
+    def _front_layout(self, beams: int) -> BeamLayout:
+        """How the beams of a ``FLASER`` lie, by the user, the ``PARAM`` lines or, up to 361 beams, the half turn."""
+        wide = self.options.field_of_view or self.field_of_view
+        intervals = max(beams - 1 if beams % 2 else beams, 1)
+        if wide is None and self.resolution is not None:
+            wide = self.resolution * intervals
+        if wide is None and beams > _HALF_TURN_BEAMS:
+            raise LogError(
+                f"a FLASER with {beams} beams does not tell where they point; give its field of view in degrees "
+                "(--fov 240), or a line PARAM laser_front_laser_fov 240"
+            )
+        wide = math.pi if wide is None or wide > 2.0 * math.pi + 1e-3 else wide
+        start, second = -wide / 2.0, -wide / 2.0 + wide / intervals
+        return BeamLayout(beams, start, second - start)
+
+
+def _radians(value: float, most: float) -> float:
+    """An angle in degrees, as CARMEN has it, or in radians, as some converters do, who never exceed ``most``."""
+    return value if value <= most else math.radians(value)
+
+
+_Message = tuple[float, Sequence[float], RawScan | None]
+"""Time stamp [s], the robot's pose by its wheels, and the scan if there is one."""
 
 
 def _odom(words: list[str]) -> _Message:
     """``ODOM x y theta tv rv accel time host logger_time``."""
     if len(words) != 10:
         raise _TornLineError(f"ODOM has {len(words)} words where 10 are needed")
-    return _numbers(words[7:8], 1)[0], _pose(words[1:4]), None
+    return _time(words[7]), _pose(words[1:4]), None
 
 
-def _flaser(words: list[str]) -> _Message:
+def _flaser(words: list[str], layout: Callable[[int], BeamLayout]) -> _Message:
     """``FLASER n range … x y theta odom_x odom_y odom_theta time host logger_time``."""
     n = _count(words[1:2], 1)
     if len(words) != n + 11:
         raise _TornLineError(f"FLASER has {len(words)} words where {n + 11} are needed for {n} beams")
-    angles = _front_angles(n)
-    ranges = np.array(_numbers(words[2 : n + 2], n, least=0.0, most=_FARTHEST))
-    scan = _Scan("FLASER", ranges, angles[0], angles[1] - angles[0])
-    return _numbers(words[n + 8 : n + 9], 1)[0], _pose(words[n + 5 : n + 8]), scan
+    laser, robot = np.array(_pose(words[n + 2 : n + 5])), _pose(words[n + 5 : n + 8])
+    scan = RawScan(_ranges(words[2 : n + 2]), layout(n), mount=between(np.array(robot), laser))
+    return _time(words[n + 8]), robot, scan
 
 
 def _robotlaser(words: list[str]) -> _Message:
@@ -244,15 +192,15 @@ def _robotlaser(words: list[str]) -> _Message:
     if len(rest) != 14:
         raise _TornLineError(f"ROBOTLASER1 has {len(words)} words where {24 + n + m} are needed for {n} beams")
     start, _, step, longest = _numbers(words[2:6], 4)
-    if not (0.0 < step < math.pi and longest > 0.0):
+    if not (1e-5 < step < math.pi and longest > 0.0):
         raise _TornLineError(f"ROBOTLASER1 has beams {step:g} rad apart, up to {longest:g} m")
     laser, robot = np.array(_pose(rest[0:3])), _pose(rest[3:6])
-    ranges = np.array(_numbers(words[9 : 9 + n], n, least=0.0, most=_FARTHEST))
-    scan = _Scan("ROBOTLASER1", ranges, start, step, longest, between(np.array(robot), laser))
-    return _numbers(rest[11:12], 1)[0], robot, scan
+    layout = BeamLayout(n, start, step)
+    scan = RawScan(_ranges(words[9 : 9 + n]), layout, longest, between(np.array(robot), laser))
+    return _time(rest[11]), robot, scan
 
 
-_READERS: dict[str, Callable[[list[str]], _Message]] = {"ODOM": _odom, "FLASER": _flaser, "ROBOTLASER1": _robotlaser}
+_READERS: dict[str, Callable[[list[str]], _Message]] = {"ODOM": _odom, "ROBOTLASER1": _robotlaser}
 
 
 def _front_angles(beams: int) -> NDArray[np.float64]:
@@ -261,12 +209,17 @@ def _front_angles(beams: int) -> NDArray[np.float64]:
     return np.asarray(-math.pi / 2 + step * np.arange(beams), np.float64)
 
 
-def _mount(mounts: list[NDArray[np.float64]]) -> NDArray[np.float64]:
-    """Where the laser sits, (3,), if it always sits there."""
-    if not mounts:
-        return np.zeros(3)
-    middle: NDArray[np.float64] = np.median(np.array(mounts), axis=0)
-    return middle if np.abs(np.array(mounts) - middle).max() < _MOUNT_SPREAD else np.zeros(3)
+def _ranges(words: list[str]) -> NDArray[np.float64]:
+    """Ranges (n,), infinite, NaN or negative ones too."""
+    try:
+        return np.array([float(word) for word in words])
+    except ValueError as error:
+        raise _TornLineError(f"it has {str(error).rpartition(': ')[2][:30]} where a number is needed") from None
+
+
+def _time(word: str) -> float:
+    """A time stamp [s]."""
+    return _numbers([word], 1)[0]
 
 
 def _numbers(words: list[str], count: int, least: float = -math.inf, most: float = math.inf) -> list[float]:
@@ -279,9 +232,7 @@ def _numbers(words: list[str], count: int, least: float = -math.inf, most: float
         raise _TornLineError(f"it has {str(error).rpartition(': ')[2][:30]} where a number is needed") from None
     if not (math.isfinite(sum(values)) and least <= min(values) and max(values) <= most):
         wrong = [value for value in values if not (math.isfinite(value) and least <= value <= most)] or [max(values)]
-        raise _TornLineError(
-            f"it has {wrong[0]:g} where a finite number is needed, of no absurd size, ranges from 0 on"
-        )
+        raise _TornLineError(f"it has {wrong[0]:g} where a finite number is needed, of no absurd size")
     return values
 
 
@@ -298,7 +249,7 @@ def _count(words: list[str], least: int) -> int:
     return int(value)
 
 
-def _lines(path: Path, where: str) -> Iterator[str]:
+def _lines(path: Path, where: str, entries: _Entries) -> Iterator[str]:
     """The lines of a file, unpacked if need be."""
     try:
         with path.open("rb") as stream:
@@ -309,6 +260,9 @@ def _lines(path: Path, where: str) -> Iterator[str]:
             for line in stream:
                 yield line.decode("latin-1")
     except (EOFError, zlib.error, gzip.BadGzipFile) as error:
+        if entries.options.keep_cut and entries.assembly.scans:
+            entries.assembly.notes.append(f"{where} is damaged or cut off; what stands before that place is kept")
+            return
         raise LogError(f"{where} is damaged: its gzip data end too early or are torn") from error
     except OSError as error:
         raise LogError(f"{where} cannot be read: {error.strerror}") from error

@@ -1,0 +1,95 @@
+"""Time stamps of a log: which of them cannot be right, and what to put in their place."""
+
+from bisect import bisect_right
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.slam.logs.recorded_log import LogError
+
+CLOCK_SLACK = 1.0
+"""How far back the clock may jump from one reading to the next [s]. Clocks of real logs stutter (Intel's goes back by
+up to 0.9 s, 629 times); more than this is a wrong stamp."""
+_MOST_WRONG = 0.1
+"""With a larger share of wrong stamps it is not known which are the right ones."""
+READING_PERIOD = 0.1
+"""Seconds between two readings whose stamps are ignored."""
+
+
+def mended_times(times: NDArray[np.float64], name: str) -> tuple[NDArray[np.float64], tuple[str, ...]]:
+    """Put stamps that cannot be right between those of their neighbours.
+
+    A stamp that is not after 0 was never set. Of the others the longest run that goes forward is believed, and
+    whatever is within ``CLOCK_SLACK`` of it.
+
+    Args:
+        times: (R,) as they were stored, in the order of the log [s]; NaN where one could not be read.
+        name: What messages call the log.
+
+    Returns:
+        The stamps (R,), those that were right as they were, and sentences on what was mended.
+
+    Raises:
+        LogError: Too many are wrong.
+    """
+    stamped = np.isfinite(times) & (times > 0.0)
+    if not stamped.any():
+        if np.all(times == 0.0):
+            return numbered_times(len(times)), ("no reading has a time stamp; they are numbered instead",)
+        return times, ()
+    right = stamped.copy()
+    right[stamped] = _forward(times[stamped])
+    wrong, unset = int(np.sum(stamped & ~right)), int(np.sum(~stamped))
+    if wrong > max(_MOST_WRONG * np.sum(stamped), 1):
+        first = int(np.flatnonzero(stamped & ~right)[0])
+        raise LogError(
+            f"{name} has {wrong:,} of {len(times):,} time stamps that do not run forwards, the first of them "
+            f"{times[first]:.3f} s at reading {first + 1}; mend the log, or go by its order alone (--ignore-times)"
+        )
+    every = np.arange(len(times))
+    mended: NDArray[np.float64] = np.where(right, times, np.interp(every, every[right], times[right]))
+    notes = []
+    if unset:
+        notes.append(f"{unset:,} readings have no time stamp; they got times between their neighbours'")
+    if wrong:
+        first = int(np.flatnonzero(stamped & ~right)[0])
+        notes.append(
+            f"{wrong:,} wrong time stamps were set aside, the first of them {times[first]:.3f} s at reading {first + 1}"
+        )
+    return mended, tuple(notes)
+
+
+def numbered_times(count: int) -> NDArray[np.float64]:
+    """Stamps (count,) ``READING_PERIOD`` apart, for a log whose own are of no use [s]."""
+    return np.asarray(READING_PERIOD * np.arange(count), np.float64)
+
+
+def _forward(times: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which stamps (n,) fit the longest run of stamps that does not go back."""
+    run = _longest_run(times)
+    kept = np.zeros(len(times), np.bool_)
+    kept[run] = True
+    so_far = np.maximum.accumulate(np.where(kept, times, -np.inf))
+    to_come = np.minimum.accumulate(np.where(kept, times, np.inf)[::-1])[::-1]
+    fits = (times >= so_far - CLOCK_SLACK) & (times <= to_come + CLOCK_SLACK)
+    return np.asarray(kept | fits, np.bool_)
+
+
+def _longest_run(times: NDArray[np.float64]) -> list[int]:
+    """Places of the longest subsequence that does not go back (by patience sorting)."""
+    tails: list[float] = []
+    ends: list[int] = []
+    before = [-1] * len(times)
+    for k, time in enumerate(times.tolist()):
+        pile = bisect_right(tails, time)
+        before[k] = ends[pile - 1] if pile else -1
+        if pile == len(tails):
+            tails.append(time)
+            ends.append(k)
+        else:
+            tails[pile], ends[pile] = time, k
+    run, k = [], ends[-1]
+    while k >= 0:
+        run.append(k)
+        k = before[k]
+    return run[::-1]
