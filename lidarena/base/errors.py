@@ -51,6 +51,10 @@ class TeamError(LidarenaError):
     """Starts and goals that no team can have, or options of a team's planner that do not exist."""
 
 
+class TemporalError(LidarenaError):
+    """A temporal network that cannot be: an unknown point, crossed bounds, a torn file, or no way to execute it."""
+
+
 class WriteError(LidarenaError, OSError):
     """A file or folder that cannot be written: its place is not writable, full, or something else; an OSError too."""
 
