@@ -43,8 +43,9 @@ class NormalForm(NamedTuple):
 class Propagation(NamedTuple):
     """What back-propagation found, for the ``r`` negative nodes in rows of ``p = n + k`` nodes.
 
-    ``via[row, u]`` is the first edge of the shortest reduced path from ``u`` to the row's node: an ordinary edge's number,
-    ``m + j`` the lower-case and ``m + k + j`` the upper-case edge of link ``j``, ``−2 − v`` an edge derived to ``v``.
+    ``via[row, u]`` is the first edge of the shortest reduced path from ``u`` to the row's node: an ordinary edge's
+    number, ``m + j`` the lower-case and ``m + k + j`` the upper-case edge of link ``j``, ``−2 − v`` one derived to
+    ``v``.
     """
 
     controllable: bool
@@ -131,12 +132,12 @@ def _lower(node: int, length: int, edge: int, distance: Ints, via: Ints, heap: I
 
 
 @kernel
-def back_propagate(form: NormalForm) -> Propagation:
+def back_propagate(form: NormalForm) -> Propagation:  # noqa: C901 - one loop over a stack of frames
     """Morris (2014), Fig. 2: shorten every path that ends in a negative edge until its length is non-negative.
 
     Returns:
-        Whether the network is dynamically controllable; if not, ``pending`` and ``again`` hold a semi-reducible negative
-        cycle.
+        Whether the network is dynamically controllable; if not, ``pending`` and ``again`` hold a semi-reducible
+        negative cycle.
     """
     count, links, edges = form.points, form.contingent.size, form.head.size
     nodes = count + links

@@ -9,7 +9,7 @@ from lidarena.temporal.stn import STN
 from lidarena.temporal.stnu import STNU
 
 _LONGEST_CYCLE = 1000
-"""Edges of a reason; a semi-reducible cycle can be exponentially long (Hunsberger 2013), then derived edges stay whole."""
+"""Edges of a reason; such a cycle can be exponentially long (Hunsberger 2013), derived edges then stay whole."""
 
 
 class Controllability(NamedTuple):
@@ -81,7 +81,8 @@ def _reason(network: STN, form: NormalForm, found: Propagation) -> NegativeCycle
 
 def _path(form: NormalForm, found: Propagation, start: int, source: int) -> list[tuple[int, int, int]]:
     """The edges (tail, head, number) of the reduced path from a node to a negative node."""
-    via, steps, node = found.via[found.row[source]], [], start
+    via, node = found.via[found.row[source]], start
+    steps: list[tuple[int, int, int]] = []
     while not steps or node != source:
         edge = int(via[node])
         following = _head(form, edge)

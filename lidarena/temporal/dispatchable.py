@@ -71,7 +71,7 @@ def make_dispatchable(network: STN, *, reduce: bool = True) -> DispatchableNetwo
 
 
 @kernel
-def _gather(form: NormalForm, found: Propagation, start: Ints, low: Ints) -> tuple[Ints, Ints]:
+def _gather(form: NormalForm, found: Propagation, start: Ints, low: Ints) -> tuple[Ints, Ints]:  # noqa: C901
     """All edges (n, n) and waits (n, k), each as a weight [ticks]; every ``A'`` is merged into its ``A`` (k,).
 
     Args:
@@ -120,7 +120,7 @@ def _contingent_edges(edges: Ints, form: NormalForm, start: Ints, low: Ints, hig
 
 
 def _longest_first(weights: Ints) -> Ints:
-    """Where the weights are (m, 2), the longest first: what implies an edge is then still there when it is looked at."""
+    """Where the weights are (m, 2), the longest first: what implies an edge is still there when its turn comes."""
     rows, columns = np.nonzero(weights < FAR)
     order = np.argsort(-np.abs(weights[rows, columns]), kind="stable")
     return np.column_stack([rows[order], columns[order]]).astype(np.int64)

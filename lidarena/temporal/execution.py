@@ -1,14 +1,14 @@
-"""Real-time execution (Morris 2014; RTE* of Hunsberger and Posenato 2023): decide now, from what has happened so far."""
+"""Real-time execution (Morris 2014; RTE* of Hunsberger and Posenato 2023): decide from what has happened so far."""
 
 import math
 from collections import defaultdict
 from collections.abc import Callable, Mapping, Sequence
 from typing import NamedTuple
 
-from lidarena.base.errors import TemporalError, suggest
+from lidarena.base.errors import TemporalError
 from lidarena.temporal.dispatchable import DispatchableNetwork, Wait
 from lidarena.temporal.edges import TICK, TemporalEdge, shown, ticks
-from lidarena.temporal.stn import STN
+from lidarena.temporal.stn import STN, unknown_point
 from lidarena.temporal.stnu import STNU
 
 
@@ -78,7 +78,7 @@ class RealTimeExecution:
         return min((self._upper[point] * TICK for point in waiting), default=math.inf)
 
     def next(self) -> TimeWindow | None:
-        """What to execute next, as early as it goes, unless something is observed before; None if only nature can act."""
+        """What to execute next, unless something is observed before; None if only nature can act."""
         return next(iter(self.enabled()), None)
 
     def execute(self, point: str, time: float) -> None:
@@ -100,8 +100,8 @@ class RealTimeExecution:
         """Tell that a contingent point was seen.
 
         Raises:
-            TemporalError: An unknown point, one that has happened, is ours to execute or was not activated, or a time in
-                the past.
+            TemporalError: An unknown point, one that has happened, is ours to execute or was not activated, or a time
+                in the past.
         """
         self._check(point, time)
         if point not in self._nature:
@@ -139,7 +139,7 @@ class RealTimeExecution:
 
     def _check(self, point: str, time: float) -> None:
         if point not in self._lower:
-            raise TemporalError(f"unknown point {point!r}{suggest(str(point), self._lower)}")
+            raise unknown_point(point, self._lower)
         if point in self.times:
             raise TemporalError(f"{point!r} has happened already, at {shown(self.times[point])}")
         if not math.isfinite(time) or ticks(time) < ticks(self.now):

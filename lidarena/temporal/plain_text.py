@@ -9,8 +9,15 @@ from lidarena.temporal.edges import shown
 from lidarena.temporal.stn import STN
 from lidarena.temporal.stnu import STNU
 
-_HEADINGS = ("KIND OF NETWORK", "Num Time-Points", "Num Ordinary Edges", "Num Contingent Links", "Time-Point Names")
-_HEADINGS = (*_HEADINGS, "Ordinary Edges", "Contingent Links")
+_HEADINGS = (
+    "KIND OF NETWORK",
+    "Num Time-Points",
+    "Num Ordinary Edges",
+    "Num Contingent Links",
+    "Time-Point Names",
+    "Ordinary Edges",
+    "Contingent Links",
+)
 
 
 def read_plain_stnu(path: str | Path, *, origin: str | None = "Z") -> STNU:

@@ -2,6 +2,7 @@
 
 import math
 from collections.abc import Iterable
+from difflib import get_close_matches
 from typing import NamedTuple
 
 import numpy as np
@@ -158,7 +159,7 @@ class STN:
         return dict(zip(self.points, earliest.tolist(), strict=True))
 
     def edge_arrays(self) -> EdgeArrays:
-        """The edges as arrays, kept until the network changes; contingent links, where there are any, as requirements."""
+        """The edges as arrays, kept until the network changes."""
         if self._arrays is None:
             ends = np.array(list(self._edges), np.int64).reshape(-1, 2)
             weights = np.array(list(self._edges.values()), np.float64)
@@ -176,7 +177,7 @@ class STN:
     def _number(self, point: str) -> int:
         number = self._numbers.get(point)
         if number is None:
-            raise TemporalError(f"unknown point {point!r}{suggest(str(point), self._numbers)}")
+            raise unknown_point(point, self._numbers)
         return number
 
     @staticmethod
@@ -188,6 +189,13 @@ class STN:
                 raise TemporalError(f"a bound {what} must be within ±{LONGEST:.0e}, got {bound!r}")
         if lower > upper or lower == math.inf or upper == -math.inf:
             raise TemporalError(f"the lower bound {what} must not be above the upper, got {_pair(lower, upper)}")
+
+
+def unknown_point(point: object, points: Iterable[str]) -> TemporalError:
+    """The refusal of a point that there is not: some of those that there are, and the nearest one."""
+    names = list(points)
+    near = get_close_matches(str(point), names, n=1)
+    return TemporalError(f"unknown point {point!r}{suggest(str(point), {*near, *names[:20]})}")
 
 
 def _pair(lower: float, upper: float) -> str:
