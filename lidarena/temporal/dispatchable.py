@@ -53,8 +53,10 @@ def make_dispatchable(network: STN, *, reduce: bool = True) -> DispatchableNetwo
         reduce: Whether implied edges and waits are left out.
 
     Raises:
-        TemporalError: The network is not dynamically controllable; the message names the negative cycle.
+        TemporalError: The network is not dynamically controllable (the message names the negative cycle), or a
+            contingent point may come before its activation.
     """
+    _check_causal(network)
     form, found = propagate(network)
     if not found.controllable:
         raise TemporalError(f"the network has no dispatchable form, it is {check_controllability(network)}")
@@ -68,6 +70,15 @@ def make_dispatchable(network: STN, *, reduce: bool = True) -> DispatchableNetwo
         _reduce_edges(edges, _longest_first(edges), fixed)
         _reduce_waits(waits, _longest_first(waits), edges, start, form.contingent)
     return _named(network, edges, waits, links)
+
+
+def _check_causal(network: STN) -> None:
+    for link in network.contingent_links if isinstance(network, STNU) else ():
+        if link.lower < 0:
+            raise TemporalError(
+                f"{link.contingent!r} may come before {link.activation!r}, which activates it, and so cannot be executed: "
+                f"the lower bound must be at least 0, got {link.lower:g}"
+            )
 
 
 @kernel

@@ -46,17 +46,17 @@ class STNU(STN):
     def add_contingent_link(self, activation: str, contingent: str, lower: float, upper: float) -> None:
         """Let ``contingent`` follow ``activation`` after a duration in [lower, upper] that nature decides.
 
+        A lower bound below 0, as fitted distributions have it, can be checked; it cannot be executed.
+
         Raises:
-            TemporalError: An unknown point, bounds that are NaN, infinite, below zero or crossed, or a point that ends
+            TemporalError: An unknown point, bounds that are NaN, infinite or crossed, or a point that ends
                 another contingent link already.
         """
         tail, head = self._number(activation), self._number(contingent)
         what = f"of the contingent link from {activation!r} to {contingent!r}"
         self._check_bounds(what, lower, upper)
-        if not 0 <= lower <= upper < math.inf:
-            raise TemporalError(
-                f"the bounds {what} must be finite and not below 0, got [{shown(lower)}, {shown(upper)}]"
-            )
+        if not -math.inf < lower <= upper < math.inf:
+            raise TemporalError(f"the bounds {what} must be finite, got [{shown(lower)}, {shown(upper)}]")
         if tail == head:
             raise TemporalError(f"a contingent link is between two points, got {activation!r} twice")
         if contingent in self._links:
