@@ -69,6 +69,7 @@ def make_dispatchable(network: STN, *, reduce: bool = True) -> DispatchableNetwo
     if reduce:
         _reduce_edges(edges, _longest_first(edges), fixed)
         _reduce_waits(waits, _longest_first(waits), edges, start, form.contingent)
+    _bound_with_their_ends(edges, start[high == 0], form.contingent[high == 0])
     return _named(network, edges, waits, links)
 
 
@@ -76,8 +77,8 @@ def _check_causal(network: STN) -> None:
     for link in network.contingent_links if isinstance(network, STNU) else ():
         if link.lower < 0:
             raise TemporalError(
-                f"{link.contingent!r} may come before {link.activation!r}, which activates it, and so cannot be executed: "
-                f"the lower bound must be at least 0, got {link.lower:g}"
+                f"{link.contingent!r} may come before {link.activation!r}, which activates it, and so cannot be "
+                f"executed: the lower bound must be at least 0, got {link.lower:g}"
             )
 
 
@@ -128,6 +129,16 @@ def _contingent_edges(edges: Ints, form: NormalForm, start: Ints, low: Ints, hig
         edges[end, begin] = min(edges[end, begin], -least)
         fixed[begin, end] = fixed[end, begin] = True
     return fixed
+
+
+def _bound_with_their_ends(edges: Ints, start: Ints, end: Ints) -> None:
+    """Bound, in place, an activation by what bounds its contingent point, where that comes at the same instant.
+
+    An executor looks at its own points only; of longer links back-propagation bounds the activation already.
+    """
+    for _ in start:
+        for activation, contingent in zip(start, end, strict=True):
+            np.minimum(edges[:, activation], edges[:, contingent], out=edges[:, activation])
 
 
 def _longest_first(weights: Ints) -> Ints:

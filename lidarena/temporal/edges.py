@@ -16,7 +16,7 @@ def ticks(time: float) -> int:
 
 def shown(time: float) -> str:
     """A time as short as it can be written without loss: ``5`` rather than ``5.0``."""
-    return f"{time:.0f}" if time == int(time) and math.isfinite(time) else f"{time:.12g}"
+    return f"{time:.0f}" if math.isfinite(time) and time == int(time) else f"{time:.12g}"
 
 
 class ContingentLink(NamedTuple):
