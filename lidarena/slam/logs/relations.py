@@ -13,10 +13,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.logs.carmen import LogError
+from lidarena.slam.logs.trajectory import interpolated
 from lidarena.slam.planar import between, wrapped
 
 TIME_SLACK = 1.0
 """A relation belongs to a log if a pose is this near to both of its times [s]."""
+_SAME_STAMP = 2e-6
+"""Stamps that differ by no more are the same, written with six digits [s]."""
 
 
 @dataclass(frozen=True)
@@ -106,7 +109,7 @@ def check_overlap(relations: Relations, times: NDArray[np.float64], log: str) ->
 def relation_errors(
     times: NDArray[np.float64], poses: NDArray[np.float64], relations: Relations, log: str = "the trajectory"
 ) -> RelationErrors:
-    """Compare a trajectory with relations, at the poses nearest to their times.
+    """Compare a trajectory with relations, at their times, between whose neighbouring poses it is interpolated.
 
     Args:
         times: (R,) ascending [s].
@@ -119,9 +122,19 @@ def relation_errors(
     """
     check_overlap(relations, times, log)
     used = _belonging(relations, times)
-    near = _nearest(times, relations.times[used])
-    error = between(relations.motions[used], between(poses[near[:, 0]], poses[near[:, 1]]))
+    first, second = (_poses_at(times, poses, relations.times[used, end]) for end in (0, 1))
+    error = between(relations.motions[used], between(first, second))
     return RelationErrors(np.hypot(error[:, 0], error[:, 1]), np.abs(wrapped(error[:, 2])), int(np.sum(~used)))
+
+
+def _poses_at(
+    times: NDArray[np.float64], poses: NDArray[np.float64], wanted: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Poses (n, 3) at the ``wanted`` times (n,): the first with exactly that stamp, or between the neighbours."""
+    nearest = _nearest(times, wanted)
+    exact = np.abs(times[nearest] - wanted) <= _SAME_STAMP
+    found: NDArray[np.float64] = np.where(exact[:, None], poses[nearest], interpolated(times, poses, wanted))
+    return found
 
 
 def _belonging(relations: Relations, times: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -17,7 +17,8 @@ from lidarena.base.errors import LidarenaError, suggest
 from lidarena.slam.logs.assembly import Assembly, RawScan
 from lidarena.slam.logs.beams import BeamLayout
 from lidarena.slam.logs.recorded_log import LogError, LogOptions, RecordedLog
-from lidarena.slam.logs.tf_tree import TransformTree, interpolated
+from lidarena.slam.logs.tf_tree import TransformTree
+from lidarena.slam.logs.trajectory import interpolated
 
 SCAN, ODOMETRY = "sensor_msgs/msg/LaserScan", "nav_msgs/msg/Odometry"
 TRANSFORMS = ("tf2_msgs/msg/TFMessage", "tf/msg/tfMessage")

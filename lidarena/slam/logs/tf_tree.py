@@ -12,18 +12,6 @@ _Planar = tuple[float, float, float]
 ODOMETRY_FRAMES = ("odom", "odom_combined", "odometry")
 
 
-def interpolated(
-    times: NDArray[np.float64], poses: NDArray[np.float64], at: NDArray[np.float64]
-) -> NDArray[np.float64]:
-    """Poses (n, 3) at the times ``at`` (n,) between those at ``times`` (m,) ascending; angles on the circle.
-
-    Before the first and after the last one it stands still.
-    """
-    headings = np.unwrap(poses[:, 2])
-    x, y, theta = (np.interp(at, times, values) for values in (poses[:, 0], poses[:, 1], headings))
-    return np.stack([x, y, wrapped(theta)], axis=1)
-
-
 class TransformTree:
     """Transforms that were heard, each child frame with its parent and its poses over time."""
 

@@ -1,4 +1,4 @@
-"""Trajectories: the corrected poses of some moments spread over all readings of a log, and files in TUM format."""
+"""Trajectories: the corrected poses of some moments spread over all readings of a log; TUM's and KITTI's files."""
 
 import math
 from dataclasses import dataclass
@@ -57,6 +57,18 @@ def spread_correction(
     return poses
 
 
+def interpolated(
+    times: NDArray[np.float64], poses: NDArray[np.float64], at: NDArray[np.float64]
+) -> NDArray[np.float64]:
+    """Poses (n, 3) at the times ``at`` (n,) between those at ``times`` (m,) ascending; angles on the circle.
+
+    Before the first and after the last one it stands still.
+    """
+    headings = np.unwrap(poses[:, 2])
+    x, y, theta = (np.interp(at, times, values) for values in (poses[:, 0], poses[:, 1], headings))
+    return np.stack([x, y, wrapped(theta)], axis=1)
+
+
 def in_order(times: NDArray[np.float64], poses: NDArray[np.float64]) -> Trajectory:
     """Sort by time; poses with one time stamp stay in the order in which they were driven."""
     order = np.argsort(times, kind="stable")
@@ -69,6 +81,18 @@ def save_tum(path: str | Path, trajectory: Trajectory) -> Path:
     for time, (x, y, theta) in zip(trajectory.times, trajectory.poses, strict=True):
         qz, qw = math.sin(theta / 2.0), math.cos(theta / 2.0)
         lines.append(f"{time:.6f} {x:.6f} {y:.6f} 0 0 0 {qz:.9f} {qw:.9f}")
+    return write_text(path, "\n".join(lines) + "\n")
+
+
+def save_kitti(path: str | Path, trajectory: Trajectory) -> Path:
+    """Write the upper three rows of each pose's matrix, twelve numbers a line, the format of the KITTI benchmark.
+
+    Its frame is x ahead, y to the left, z up, not a camera's; it knows no time stamps.
+    """
+    lines = []
+    for x, y, theta in trajectory.poses:
+        cos, sin = math.cos(theta), math.sin(theta)
+        lines.append(f"{cos:.9f} {-sin:.9f} 0 {x:.6f} {sin:.9f} {cos:.9f} 0 {y:.6f} 0 0 1 0")
     return write_text(path, "\n".join(lines) + "\n")
 
 

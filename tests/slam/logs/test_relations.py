@@ -6,7 +6,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from lidarena.slam.logs.carmen import LogError
-from lidarena.slam.logs.relations import check_overlap, read_relations, relation_errors
+from lidarena.slam.logs.relations import Relations, check_overlap, read_relations, relation_errors
 from lidarena.slam.planar import compose
 from tests.slam.drive import ring
 from tests.slam.logs.recorded import LAP, record, relations_of, way
@@ -72,3 +72,11 @@ def test_bad_relations_are_refused(tmp_path: Path, text: str | None, sentence: s
         file.write_text(text)
     with pytest.raises(LogError, match=sentence):
         read_relations(file)
+
+
+def test_between_two_poses_a_trajectory_is_interpolated() -> None:
+    times = 1e9 + 0.2 * np.arange(50)
+    poses = np.column_stack([0.5 * (times - 1e9), np.zeros(50), np.zeros(50)])  # 0.5 m/s, straight on
+    truth = np.array([[1e9 + 0.09, 1e9 + 5.11]])
+    relations = Relations("a", truth, np.array([[0.5 * 5.02, 0.0, 0.0]]))
+    assert relation_errors(times, poses, relations).translation[0] < 1e-6

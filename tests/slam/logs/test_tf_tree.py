@@ -1,10 +1,10 @@
-"""Transforms between a robot's frames: fixed ones chained, the moving one found, turns interpolated on the circle."""
+"""Transforms between a robot's frames: fixed ones chained, the moving one found."""
 
 import math
 
 import numpy as np
 
-from lidarena.slam.logs.tf_tree import TransformTree, interpolated
+from lidarena.slam.logs.tf_tree import TransformTree
 
 
 def tree() -> TransformTree:
@@ -27,9 +27,3 @@ def test_the_robots_way_is_the_transform_out_of_the_odometry_frame() -> None:
     assert moving is not None and moving[2] == "base_link"
     np.testing.assert_allclose(moving[1][:, 0], np.arange(5.0))
     assert TransformTree().moving("laser") is None
-
-
-def test_turns_are_interpolated_on_the_circle() -> None:
-    poses = np.array([[0.0, 0.0, 3.0], [1.0, 0.0, -3.0]])
-    half = interpolated(np.array([0.0, 1.0]), poses, np.array([0.5]))
-    np.testing.assert_allclose([half[0, 0], abs(half[0, 2])], [0.5, math.pi])

@@ -1,9 +1,18 @@
+import math
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from lidarena.slam.logs.trajectory import Trajectory, in_order, load_tum, save_tum, spread_correction
+from lidarena.slam.logs.trajectory import (
+    Trajectory,
+    in_order,
+    interpolated,
+    load_tum,
+    save_kitti,
+    save_tum,
+    spread_correction,
+)
 from lidarena.slam.planar import compose
 
 
@@ -46,3 +55,16 @@ def test_a_file_reads_back(tmp_path: Path) -> None:
     assert isinstance(again, Trajectory)
     np.testing.assert_allclose(again.times, trajectory.times)
     np.testing.assert_allclose(again.poses, trajectory.poses, atol=1e-6)
+
+
+def test_turns_are_interpolated_on_the_circle() -> None:
+    poses = np.array([[0.0, 0.0, 3.0], [1.0, 0.0, -3.0]])
+    half = interpolated(np.array([0.0, 1.0]), poses, np.array([0.5]))
+    np.testing.assert_allclose([half[0, 0], abs(half[0, 2])], [0.5, math.pi])
+
+
+def test_kittis_matrices_turn_and_shift(tmp_path: Path) -> None:
+    poses = np.array([[1.0, 2.0, math.pi / 2], [0.0, -1.0, 0.0]])
+    table = np.loadtxt(save_kitti(tmp_path / "a.kitti", Trajectory(np.arange(2.0), poses)))
+    np.testing.assert_allclose(table[0], [0, -1, 0, 1, 1, 0, 0, 2, 0, 0, 1, 0], atol=1e-9)
+    np.testing.assert_allclose(table[1], [1, 0, 0, 0, 0, 1, 0, -1, 0, 0, 1, 0], atol=1e-9)
