@@ -2,6 +2,7 @@
 
 import json
 import os
+from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
@@ -19,8 +20,12 @@ from lidarena.world.map_server import save_map
 FILES = ("map.yaml", "map.pgm", "trajectory.tum", "picture.png", "results.json")
 
 
-def check_folder(folder: str | os.PathLike[str]) -> None:
+def check_folder(folder: str | os.PathLike[str], files: Collection[str] = FILES) -> None:
     """Refuse, before the work begins, a folder that holds other people's files.
+
+    Args:
+        folder: Where results are to go.
+        files: What an earlier run may have left there.
 
     Raises:
         LogError: It is a file, or a folder with anything but an earlier replay in it.
@@ -30,7 +35,7 @@ def check_folder(folder: str | os.PathLike[str]) -> None:
     check_writable(place)
     if place.exists() and not place.is_dir():
         raise LogError(f"{str(place)!r} is a file; a folder is needed for the results")
-    if place.is_dir() and (others := sorted(set(os.listdir(place)) - set(FILES))):
+    if place.is_dir() and (others := sorted(set(os.listdir(place)) - set(files))):
         raise LogError(
             f"folder {str(place)!r} holds {others[0]!r}; an empty or new one, or an earlier replay's is needed"
         )

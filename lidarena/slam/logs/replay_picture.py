@@ -38,18 +38,18 @@ def draw_replay(log: RecordedLog, result: Replay) -> "Figure":
     length = float(np.hypot(*np.diff(log.odometry[:, :2], axis=0).T).sum())
     minutes = (result.trajectory.times[-1] - result.trajectory.times[0]) / 60.0
     figure.suptitle(f"{log.name}: {length:,.0f} m in {minutes:,.0f} minutes, {len(log.ranges):,} laser scans")
-    way = _draw(left, result.map, result.trajectory.poses)
+    way = draw_map(left, result.map, result.trajectory.poses)
     left.set_title("with SLAM: map and way of the robot")
     bar = figure.colorbar(way, ax=left, location="bottom", shrink=0.5, aspect=40, pad=0.02)
     bar.set_ticks([0.0, 1.0], labels=["start", f"{minutes:,.0f} min"])
     by_wheels = laser_odometry(log)[result.readings]
     scans = np.searchsorted(log.scan_readings, result.readings)
-    _draw(right, trace_map(log, scans, by_wheels), log.odometry)
+    draw_map(right, trace_map(log, scans, by_wheels), log.odometry)
     right.set_title("the same scans by the wheels alone")
     return figure
 
 
-def _draw(axes: "Axes", grid: OccupancyMap, poses: NDArray[np.float64]) -> Any:
+def draw_map(axes: "Axes", grid: OccupancyMap, poses: NDArray[np.float64]) -> Any:
     """Draw a map, the way (R, 3) coloured by time, its start and its end; returns the coloured way."""
     from matplotlib.collections import LineCollection
 
