@@ -17,7 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar, cast
 
 import numpy as np
-from numba import config, njit, types
+from numba import config, njit, typeof, types
 from numba.core import cgutils
 from numba.extending import intrinsic
 from numpy.typing import NDArray
@@ -48,6 +48,19 @@ def inlined(function: Callable[..., Result]) -> Callable[..., Result]:
 def merged(function: Callable[..., Result]) -> Callable[..., Result]:
     """Compile a large ``leaf`` only as a part of its callers, not by itself and then again with each of them."""
     return _compiled(function, {**_LEAF, "inline": "always"})
+
+
+def entry_point(function: Callable[..., Result], *arguments: Any) -> Callable[..., Result]:
+    """Compile a kernel for arguments of these types; returns what calls it without asking for their types again.
+
+    numba looks at every array in every tuple on each call, which takes longer than a step of a single world does in
+    some kernels. Whoever calls what is returned must hand over arguments of the very same types, layout of arrays
+    included: nothing is checked any more.
+    """
+    dispatcher, type_of = cast(Any, function), cast(Callable[[Any], Any], typeof)
+    signature = tuple(type_of(argument) for argument in arguments)
+    dispatcher.compile(signature)
+    return cast(Callable[..., Result], dispatcher.get_overload(signature))
 
 
 def _compiled(function: Callable[..., Result], options: dict[str, Any]) -> Callable[..., Result]:

@@ -41,10 +41,11 @@ class DeadReckoningEstimator(KnownPoseEstimator):
 
     def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors, add up the odometry and map, world after world."""
-        sense_and_reckon(
+        arguments = (
             sensing, share, self.geometry, self.parameters, self.estimate, self.drift,
             self.covariance, self.d_optimality, self.since, self.maps, self.outlines,
         )  # fmt: skip
+        self._pass_of(sense_and_reckon, arguments)(*arguments)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The belief, and the covariance without the floor."""

@@ -5,12 +5,14 @@ the estimators of this package: ``BatchEstimator``.
 """
 
 from abc import ABC, abstractmethod
+from collections.abc import Callable
 from functools import cached_property
 from typing import Any, NamedTuple, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.jit import entry_point
 from lidarena.slam.occupancy import OccupancyMaps, clear_map, empty_maps
 from lidarena.slam.readings import ScanGeometry, Share
 from lidarena.world.lidar import LidarSpec
@@ -18,6 +20,7 @@ from lidarena.world.odometry import OdometryNoise
 from lidarena.world.sensors import Sensing
 
 Floats = NDArray[np.float64]
+Pass = Callable[..., None]
 
 
 class ScanSpec(NamedTuple):
@@ -131,6 +134,8 @@ class BatchEstimator(ABC):
 
     restorable: bool = True
     particles: NDArray[np.float64] | None = None
+    _sensing: Sensing | None = None
+    _pass: Pass
 
     def __init__(self, settings: EstimatorSettings) -> None:
         self.settings = settings
@@ -161,6 +166,19 @@ class BatchEstimator(ABC):
     @abstractmethod
     def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Sense and estimate in the worlds of a thread's share; runs on every thread at once."""
+
+    def _pass_of(self, function: Pass, arguments: tuple[Any, ...]) -> Pass:
+        """Return what calls a kernel with such arguments, faster than the kernel itself from the second time on.
+
+        Args:
+            function: The same one on every call.
+            arguments: Its arguments: what is sensed, the share, and arrays of the estimator's own, whose types never
+                change.
+        """
+        if self._sensing is not arguments[0]:
+            self._pass = entry_point(function, *arguments)
+            self._sensing = arguments[0]  # last: other threads look at it first
+        return self._pass
 
     def finish(self, sensing: Sensing, first: int, last: int, active: NDArray[np.bool_]) -> None:  # noqa: B027
         """Do in the ``active`` of worlds ``first`` … ``last`` - 1 what must not run on threads; here nothing."""

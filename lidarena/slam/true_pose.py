@@ -28,10 +28,11 @@ class TruePoseEstimator(KnownPoseEstimator):
 
     def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors and map with the true poses, world after world."""
-        sense_and_map(
+        arguments = (
             sensing, share, self.geometry, self.parameters, self.estimate, self.since,
             self.maps, self.outlines,
         )  # fmt: skip
+        self._pass_of(sense_and_map, arguments)(*arguments)
 
     def scaled_entropy(self) -> NDArray[np.float64]:
         """Zero, as nothing is in doubt."""

@@ -1,9 +1,10 @@
 import threading
+from typing import NamedTuple
 
 import numpy as np
 import pytest
 
-from lidarena.base.jit import inlined, kernel, leaf, merged, take_next
+from lidarena.base.jit import entry_point, inlined, kernel, leaf, merged, take_next
 
 
 @kernel
@@ -65,3 +66,23 @@ def test_threads_that_share_a_counter_take_every_number_once(threads: int) -> No
     for worker in workers:
         worker.join()
     assert (taken == 1).all()
+
+
+class Pair(NamedTuple):
+    first: np.ndarray
+    second: np.ndarray
+
+
+@leaf
+def dot(factor: float, pair: Pair) -> float:
+    total = 0.0
+    for k in range(len(pair.first)):
+        total += factor * pair.first[k] * pair.second[k]
+    return total
+
+
+def test_an_entry_point_calls_the_kernel_with_other_arguments_of_the_same_types() -> None:
+    call = entry_point(dot, 1.0, Pair(np.zeros(1), np.zeros(1)))
+    for n in (0, 1, 7):
+        pair = Pair(np.arange(n, dtype=float), np.linspace(1.0, 2.0, n))
+        assert call(0.5, pair) == dot(0.5, pair)

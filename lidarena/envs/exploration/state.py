@@ -108,7 +108,7 @@ class ExplorationCore:
         around, directions = self.bumper.ranges(self.sensors), self.bumper.directions
         may_touch(driven, period, self.robot.radius, around, directions, self._near)
         self.physics.advance(driven, period, self._near, active)
-        self._perceive(0, self.worlds, self._all if active is None else active)
+        self._perceive(0, self.worlds, self._all if active is None else np.ascontiguousarray(active, np.bool_))
 
     def _perceive(self, first: int, last: int, active: NDArray[np.bool_]) -> None:
         """Read the sensors of those of worlds first … last - 1 that are active, and run their SLAM."""

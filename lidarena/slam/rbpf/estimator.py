@@ -58,10 +58,11 @@ class ParticleFilterEstimator(BatchEstimator):
     def sense_and_estimate(self, sensing: Sensing, share: Share) -> None:
         """Read the sensors and run the filters of world after world."""
         filters = self.filters
-        sense_and_filter(
+        arguments = (
             sensing, share, self.geometry, filters.parameters, filters.state, filters.maps,
             filters.scratch,
         )  # fmt: skip
+        self._pass_of(sense_and_filter, arguments)(*arguments)
 
     def scaled_entropy(self) -> NDArray[np.float64]:
         """Entropy of the particles' weights over its maximum ln N, (worlds,) in [0, 1]."""
