@@ -61,7 +61,7 @@ class ExplorationCore:
         self.sensors = empty_sensors(worlds, self.beam.beams)
 
     def _make_sensing(self) -> Sensing:
-        """What every step's sensing reads and writes: arrays that stay the same ones, so that it is made once."""
+        """What every step's sensing reads and writes: arrays that stay the same ones, but for those of drawn plans."""
         return Sensing(
             np.zeros_like(self.physics.poses), self.physics.poses, self.plan, self.streams, self._noise, self.beam,
             self.robot.bumper, self.lidar.geometry, self.lidar.directions, self.sensors,
@@ -112,6 +112,8 @@ class ExplorationCore:
 
     def _perceive(self, first: int, last: int, active: NDArray[np.bool_]) -> None:
         """Read the sensors of those of worlds first … last - 1 that are active, and run their SLAM."""
+        if self._sensing.geometry is not self.lidar.geometry:  # a drawn plan did not fit into the arrays
+            self._sensing = self._sensing._replace(geometry=self.lidar.geometry)
         sensing, estimator, counter = self._sensing, self.estimator, np.array([first])
         on_threads(
             last - first, lambda thread: estimator.sense_and_estimate(sensing, Share(counter, last, thread, active))

@@ -192,3 +192,13 @@ def test_random_plans_that_cannot_be_are_refused_when_worlds_are_made(spec: str,
     with pytest.raises(MapError, match=sentence) as refusal:
         gym.make_vec("lidarena/Exploration-v0", 2, "vector_entry_point", map=spec, slam="truth")
     assert "\n" not in str(refusal.value)
+
+
+def test_what_is_sensed_is_what_stands_in_the_plan_that_was_drawn_last() -> None:
+    env = ExplorationEnv(map="random:maze", slam="truth")
+    core = env.episodes.core
+    for seed in range(6):
+        env.reset(seed=seed)
+        env.step(0)
+        assert core.sensors.ranges.tobytes() == core.lidar.cast(core.physics.poses, core.plan).tobytes()
+        assert core.sensors.ranges.min() < core.beam.max_range
