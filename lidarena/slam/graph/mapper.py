@@ -7,11 +7,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import EstimatorError
+from lidarena.slam.graph.back_end import BackEnd, adjusted
 from lidarena.slam.graph.front_end import FrontEnd, FrontEndParameters
 from lidarena.slam.graph.surface_points import BeamFan
-from lidarena.slam.planar import compose, inverse
+from lidarena.slam.planar import between, compose, inverse, wrapped
 
 Floats = NDArray[np.float64]
+
+_CONTRADICTED = 0.3
+"""A loop from which the finished map is farther away [m, rad] was not kept."""
 
 
 @dataclass(frozen=True)
@@ -141,8 +145,65 @@ class Mapper:
     def finish(self) -> MapResult:
         """Make the best of everything so far; more scans may follow."""
         front = self.front
-        poses = np.array(front.poses)
-        scans = np.array(front.keyframes, np.int64)
-        nodes = poses[scans]
-        graph = PoseGraph(nodes, scans, np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3)))
-        return MapResult(compose(poses, inverse(self.mount)), [], graph, [])
+        if not front.keyframes:
+            return _unmapped(front, self.mount)
+        back = BackEnd(front)
+        back.close_loops()
+        nodes, edges = adjusted(front, back.scans, back.poses)
+        poses = spread_over(front, back.scans, nodes)
+        loops = _checked_loops(back, nodes)
+        graph = PoseGraph(nodes, back.scans, edges.pairs, edges.motions, edges.information)
+        return MapResult(compose(poses, inverse(self.mount)), loops, graph, _doubts(front, loops))
+
+
+def spread_over(front: FrontEnd, scans: NDArray[np.int64], nodes: Floats) -> Floats:
+    """(S, 3) poses of all scans from those of the keyframes (K, 3), between which the matched way keeps its shape."""
+    matched, every = np.array(front.poses), np.arange(front.count)
+    at = np.clip(np.searchsorted(scans, every, side="right") - 1, 0, len(scans) - 1)
+    after = np.minimum(at + 1, len(scans) - 1)
+    a, b = scans[at], scans[after]
+    onwards = compose(nodes[at], between(matched[a], matched))
+    gap = compose(nodes[after], between(matched[b], matched)) - onwards
+    gap[:, 2] = wrapped(gap[:, 2])
+    share = np.clip((every - a) / np.maximum(b - a, 1), 0.0, 1.0)
+    poses: Floats = onwards + share[:, None] * gap
+    poses[:, 2] = wrapped(poses[:, 2])
+    return poses
+
+
+def _unmapped(front: FrontEnd, mount: Floats) -> MapResult:
+    """What is left where no scan could be used: the wheels' way."""
+    poses = np.array(front.poses).reshape(-1, 3)
+    none = np.zeros((0, 3))
+    graph = PoseGraph(none, np.zeros(0, np.int64), np.zeros((0, 2), np.int64), none, np.zeros((0, 3, 3)))
+    doubts = ["no scan could be matched; the poses are those of the wheels alone"]
+    return MapResult(compose(poses, inverse(mount)), [], graph, doubts)
+
+
+def _checked_loops(back: BackEnd, nodes: Floats) -> list[Loop]:
+    """The loops with how far the finished map disagrees."""
+    loops = []
+    for one in back.loops:
+        error = between(one.motion, between(nodes[one.earlier], nodes[one.later]))
+        residual = float(np.hypot(error[0], error[1]))
+        kept = residual < _CONTRADICTED and abs(float(error[2])) < _CONTRADICTED
+        later, earlier = int(back.scans[one.later]), int(back.scans[one.earlier])
+        loops.append(Loop(later, earlier, one.motion, residual, kept))
+    return loops
+
+
+def _doubts(front: FrontEnd, loops: list[Loop]) -> list[str]:
+    """Sentences on where the map may be wrong."""
+    doubts = []
+    held = int(np.sum(front.held))
+    if held:
+        first = int(np.argmax(front.held))
+        doubts.append(f"{held} of {front.count} scans fitted nothing and follow the wheels alone, first scan {first}")
+    left = [loop for loop in loops if not loop.kept]
+    if left:
+        worst = max(left, key=lambda loop: loop.residual)
+        doubts.append(
+            f"{len(left)} of {len(loops)} loops contradict the map, the worst by {worst.residual:.2f} m between scans "
+            f"{worst.to_scan} and {worst.from_scan}; the map may be torn there"
+        )
+    return doubts

@@ -1,0 +1,97 @@
+"""Sparse Gauss-Newton over poses that are tied to each other by measured motions (Grisetti et al. 2010)."""
+
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.sparse import coo_matrix
+from scipy.sparse.linalg import splu
+
+from lidarena.slam.planar import between, wrapped
+
+Floats = NDArray[np.float64]
+
+
+class Edges(NamedTuple):
+    """``E`` measured motions.
+
+    Attributes:
+        pairs: (E, 2) from which pose to which.
+        motions: (E, 3) pose of the second seen from the first.
+        information: (E, 3, 3) inverse covariances.
+        robust: (E,) squared Mahalanobis distance from which on an edge is doubted (Geman-McClure); infinite: never.
+    """
+
+    pairs: NDArray[np.int64]
+    motions: Floats
+    information: Floats
+    robust: Floats
+
+
+def joined(parts: list[Edges]) -> Edges:
+    """All edges of several lists."""
+    return Edges(*(np.concatenate(arrays) for arrays in zip(*parts, strict=True)))
+
+
+def residuals(poses: Floats, edges: Edges) -> Floats:
+    """(E, 3) how far the poses (K, 3) are from what was measured, in the frame of the first of each pair."""
+    error = between(poses[edges.pairs[:, 0]], poses[edges.pairs[:, 1]]) - edges.motions
+    error[:, 2] = wrapped(error[:, 2])
+    return error
+
+
+def belief(poses: Floats, edges: Edges) -> Floats:
+    """(E,) how far each edge is believed, 0 to 1."""
+    error = residuals(poses, edges)
+    squared = np.einsum("ei,eij,ej->e", error, edges.information, error)
+    share = 1.0 / (1.0 + squared / edges.robust)
+    believed: Floats = share * share
+    return believed
+
+
+def optimized(poses: Floats, edges: Edges, rounds: int = 5) -> Floats:
+    """Move poses (K, 3) to where the edges fit best; the first stays where it is."""
+    poses = poses.copy()
+    for _ in range(rounds):
+        step = _gauss_newton_step(poses, edges)
+        poses += step
+        if np.abs(step).max() < 1e-5:
+            break
+    poses[:, 2] = wrapped(poses[:, 2])
+    return poses
+
+
+def _gauss_newton_step(poses: Floats, edges: Edges) -> Floats:
+    """(K, 3) the step that the linearised edges ask for."""
+    i, j = edges.pairs[:, 0], edges.pairs[:, 1]
+    error, moved = residuals(poses, edges), between(poses[i], poses[j])
+    information = edges.information * belief(poses, edges)[:, None, None]
+    cos, sin, zero = np.cos(poses[i, 2]), np.sin(poses[i, 2]), np.zeros(len(i))
+    turned = np.stack([np.stack([cos, sin, zero], -1), np.stack([-sin, cos, zero], -1)], 1)
+    second = np.concatenate([turned, np.broadcast_to([[[0.0, 0.0, 1.0]]], (len(i), 1, 3))], axis=1)
+    first = -second
+    first[:, 0, 2], first[:, 1, 2] = moved[:, 1], -moved[:, 0]
+    blocks, gradient = [], np.zeros((len(poses), 3))
+    for a, left in ((i, first), (j, second)):
+        weighed = np.einsum("eki,ekl->eil", left, information)
+        np.add.at(gradient, a, np.einsum("eil,el->ei", weighed, error))
+        blocks += [(a, b, np.einsum("eil,elj->eij", weighed, right)) for b, right in ((i, first), (j, second))]
+    rows = np.concatenate(
+        [np.broadcast_to(3 * a[:, None, None] + np.arange(3)[:, None], m.shape) for a, _, m in blocks]
+    )
+    columns = np.concatenate([np.broadcast_to(3 * b[:, None, None] + np.arange(3), m.shape) for _, b, m in blocks])
+    values, size = np.concatenate([m for _, _, m in blocks]), 3 * len(poses)
+    anchor = np.arange(3)
+    matrix = coo_matrix(
+        (
+            np.concatenate([values.ravel(), np.full(3, 1e9), np.full(size, 1e-6)]),
+            (
+                np.concatenate([rows.ravel(), anchor, np.arange(size)]),
+                np.concatenate([columns.ravel(), anchor, np.arange(size)]),
+            ),
+        ),
+        shape=(size, size),
+    ).tocsc()
+    solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+    step: Floats = solver.solve(-gradient.ravel()).reshape(-1, 3)
+    return step
