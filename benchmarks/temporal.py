@@ -3,7 +3,7 @@
 python benchmarks/temporal.py [--lanes FOLDER] [--repeats 30]
 
 HRC-shaped networks have two lanes, human and robot: the human's actions are contingent links, what follows in a lane,
-and now and then across the lanes, is ordered, a deadline bounds the whole. ``--lanes`` takes a folder of plainStnu files.
+and now and then across the lanes, is ordered, a deadline bounds the whole. ``--lanes`` takes plainStnu files' folder.
 """
 
 import argparse

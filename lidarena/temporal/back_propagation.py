@@ -41,20 +41,23 @@ class NormalForm(NamedTuple):
 
 
 class Propagation(NamedTuple):
-    """What back-propagation found, for the ``r`` negative nodes in rows of ``p = n + k`` nodes.
+    """What back-propagation found: the shortest reduced paths to every negative node, ``e`` of them in all.
 
-    ``via[row, u]`` is the first edge of the shortest reduced path from ``u`` to the row's node: an ordinary edge's
-    number, ``m + j`` the lower-case and ``m + k + j`` the upper-case edge of link ``j``, ``−2 − v`` one derived to
-    ``v``.
+    Those to node ``s`` are ``start[s]`` to ``stop[s]``. ``via`` is a path's first edge: an ordinary edge's number,
+    ``m + j`` the lower-case and ``m + k + j`` the upper-case edge of link ``j``, ``−2 − v`` one derived to ``v``.
     """
 
     controllable: bool
-    row: Ints
-    """(p,) the row of a negative node, −1 of others"""
-    distance: Ints
-    """(r, p) [ticks], `FAR` where there is no such path"""
+    start: Ints
+    """(n + k,) where a node's paths begin"""
+    stop: Ints
+    """(n + k,) where they end"""
+    tail: Ints
+    """(e,) where each path comes from"""
+    length: Ints
+    """(e,) [ticks]"""
     via: Ints
-    """(r, p)"""
+    """(e,)"""
     pending: Ints
     """The nodes whose back-propagation was under way when one of them came again, the first one outermost."""
     again: int
@@ -117,18 +120,75 @@ def _sorted_by_head(head: Ints, weight: Ints, nodes: int, negative: bool) -> tup
 
 
 @inlined
-def _lower(node: int, length: int, edge: int, distance: Ints, via: Ints, heap: Ints, place: Ints, size: int) -> int:
-    """Note a shorter path from a node; the heap holds only nodes at negative distance. Returns the heap's size."""
-    if length >= distance[node]:
-        return size
-    distance[node], via[node] = length, edge
+def _lower(
+    node: int, length: int, edge: int, far: Ints, via: Ints, heap: Ints, place: Ints, touched: Ints, sizes: Ints
+) -> None:
+    """Note a shorter path from a node; the heap holds only nodes at negative distance.
+
+    ``sizes`` (2,) counts the nodes in the heap and those in ``touched``, which have a path.
+    """
+    if length >= far[node]:
+        return
+    if far[node] == FAR:
+        touched[sizes[1]] = node
+        sizes[1] += 1
+    far[node], via[node] = length, edge
     if length >= 0:
-        return size
+        return
     if place[node] < 0:
-        heap[size], place[node] = node, size
-        size += 1
-    _rise(heap, place, distance, place[node])
-    return size
+        heap[sizes[0]], place[node] = node, sizes[0]
+        sizes[0] += 1
+    _rise(heap, place, far, place[node])
+
+
+@kernel
+def _latest_first(form: NormalForm, cut_start: Ints, cut_edge: Ints, negative: NDArray[np.bool_]) -> Ints:
+    """The negative nodes, each after those that negative edges put later, so that few have to wait for others."""
+    count, nodes = form.points, negative.size
+    order, state = np.empty(nodes, np.int64), np.zeros(nodes, np.int64)
+    stack, entry = np.empty(nodes, np.int64), np.zeros(nodes, np.int64)
+    found = 0
+    for first in range(nodes):
+        if not negative[first] or state[first]:
+            continue
+        depth, stack[0], state[first] = 1, first, 1
+        while depth > 0:
+            node = stack[depth - 1]
+            at, step = cut_start[node] + entry[node], -1
+            if at < cut_start[node + 1]:
+                step = form.tail[cut_edge[at]]
+            elif at == cut_start[node + 1] and node >= count:
+                step = form.contingent[node - count]
+            else:
+                depth -= 1
+                order[found] = node
+                found += 1
+                continue
+            entry[node] += 1
+            if negative[step] and state[step] == 0:
+                stack[depth], state[step] = step, 1
+                depth += 1
+    return order[:found]
+
+
+@kernel
+def _grown(array: Ints, needed: int) -> Ints:
+    """The array, or one of twice the size or more with the same beginning."""
+    if needed <= array.size:
+        return array
+    larger = np.empty(max(needed, 2 * array.size), np.int64)
+    larger[: array.size] = array
+    return larger
+
+
+@kernel
+def _deeper(frames: Ints, depth: int) -> Ints:
+    """The frames (depths, n + k), or twice as many with the same ones in front."""
+    if depth < frames.shape[0]:
+        return frames
+    larger = np.empty((2 * frames.shape[0], frames.shape[1]), np.int64)
+    larger[: frames.shape[0]] = frames
+    return larger
 
 
 @kernel
@@ -144,75 +204,98 @@ def back_propagate(form: NormalForm) -> Propagation:  # noqa: C901 - one loop ov
     in_start, in_edge = _sorted_by_head(form.head, form.weight, nodes, False)
     cut_start, cut_edge = _sorted_by_head(form.head, form.weight, nodes, True)
     lower_link = np.full(nodes, -1, np.int64)
+    negative = np.zeros(nodes, np.bool_)
     for link in range(links):
         if form.slack[link] > 0:
             lower_link[form.contingent[link]] = link
-    row, rows = np.full(nodes, -1, np.int64), 0
+            negative[count + link] = True
     for node in range(nodes):
-        if cut_start[node + 1] > cut_start[node] or (node >= count and form.slack[node - count] > 0):
-            row[node] = rows
-            rows += 1
-    distance, via = np.empty((rows, nodes), np.int64), np.empty((rows, nodes), np.int64)
-    heaps, places = np.empty((rows, nodes), np.int64), np.empty((rows, nodes), np.int64)
-    derived_tail, derived_from = np.empty((rows, nodes), np.int64), np.zeros(rows, np.int64)
-    state, sizes = np.zeros(rows, np.int64), np.zeros(rows, np.int64)  # state: 0 new, 1 under way, 2 done
+        negative[node] |= cut_start[node + 1] > cut_start[node]
+    order = _latest_first(form, cut_start, cut_edge, negative)
+    rows = order.size
+    fars, vias = np.empty((4, nodes), np.int64), np.empty((4, nodes), np.int64)
+    heaps, places = np.empty((4, nodes), np.int64), np.empty((4, nodes), np.int64)
+    touches, sizes = np.empty((4, nodes), np.int64), np.zeros((rows, 2), np.int64)
+    state = np.zeros(nodes, np.int64)  # 0 new, 1 under way, 2 done
     stack = np.empty(rows, np.int64)
+    start, bend, stop = np.zeros(nodes, np.int64), np.zeros(nodes, np.int64), np.zeros(nodes, np.int64)
+    tails, lengths, steps = np.empty(8 * nodes, np.int64), np.empty(8 * nodes, np.int64), np.empty(8 * nodes, np.int64)
+    used, again, deepest = 0, -1, 0
 
-    for first in range(nodes):
-        if row[first] < 0 or state[row[first]] == 2:
+    for first in order:
+        if state[first] == 2:
             continue
         depth, stack[0] = 1, first
         while depth > 0:
             source = stack[depth - 1]
-            at = row[source]
-            far, how = distance[at], via[at]
-            heap, place = heaps[depth - 1], places[depth - 1]
-            if state[at] == 0:
-                state[at], size = 1, 0
-                far[:], how[:], place[:] = FAR, NO_EDGE, -1
-                far[source] = 0
+            far, via, heap, place = fars[depth - 1], vias[depth - 1], heaps[depth - 1], places[depth - 1]
+            touched, size = touches[depth - 1], sizes[depth - 1]
+            if state[source] == 0:
+                state[source] = 1
+                far[:], place[:], size[:] = FAR, -1, 0
+                far[source], via[source] = 0, NO_EDGE
                 for entry in range(cut_start[source], cut_start[source + 1]):
                     edge = cut_edge[entry]
-                    size = _lower(form.tail[edge], form.weight[edge], edge, far, how, heap, place, size)
+                    _lower(form.tail[edge], form.weight[edge], edge, far, via, heap, place, touched, size)
                 if source >= count and form.slack[source - count] > 0:
                     link = source - count
-                    size = _lower(
-                        form.contingent[link], -form.slack[link], edges + links + link, far, how, heap, place, size
-                    )
-                sizes[depth - 1] = size
-            size = sizes[depth - 1]
+                    end, upper = form.contingent[link], edges + links + link
+                    _lower(end, -form.slack[link], upper, far, via, heap, place, touched, size)
             nested = False
-            while size > 0:
+            while size[0] > 0 and again < 0:
                 node = heap[0]
-                inner = row[node]
-                if inner >= 0 and state[inner] == 1:
-                    return Propagation(False, row, distance, via, stack[:depth].copy(), node)
-                if inner >= 0 and state[inner] == 0:
+                if state[node] == 1:
+                    again, deepest = node, depth
+                    break
+                if negative[node] and state[node] == 0:
                     stack[depth] = node
+                    fars, vias, touches = _deeper(fars, depth), _deeper(vias, depth), _deeper(touches, depth)
+                    heaps, places = _deeper(heaps, depth), _deeper(places, depth)
                     depth += 1
                     nested = True
                     break
-                _take_least(heap, place, far, size)
-                size -= 1
+                _take_least(heap, place, far, size[0])
+                size[0] -= 1
                 length = far[node]
                 for entry in range(in_start[node], in_start[node + 1]):
                     edge = in_edge[entry]
-                    size = _lower(form.tail[edge], length + form.weight[edge], edge, far, how, heap, place, size)
-                if inner >= 0:
-                    for entry in range(derived_from[inner]):
-                        tail = derived_tail[inner, entry]
-                        size = _lower(tail, length + distance[inner, tail], -2 - node, far, how, heap, place, size)
+                    _lower(form.tail[edge], length + form.weight[edge], edge, far, via, heap, place, touched, size)
+                for entry in range(start[node], bend[node]):
+                    if length + lengths[entry] < far[tails[entry]]:
+                        _lower(tails[entry], length + lengths[entry], -2 - node, far, via, heap, place, touched, size)
                 link = lower_link[node]
                 if link >= 0 and count + link != source:
-                    size = _lower(count + link, length, edges + link, far, how, heap, place, size)
-            sizes[depth - 1 - int(nested)] = size
+                    _lower(count + link, length, edges + link, far, via, heap, place, touched, size)
             if nested:
                 continue
-            found = 0
-            for node in range(nodes):
-                if 0 <= far[node] < FAR and node != source:
-                    derived_tail[at, found] = node
-                    found += 1
-            derived_from[at], state[at] = found, 2
-            depth -= 1
-    return Propagation(True, row, distance, via, stack[:0].copy(), -1)
+            tails, lengths, steps = (
+                _grown(tails, used + nodes + 1),
+                _grown(lengths, used + nodes + 1),
+                _grown(steps, used + nodes + 1),
+            )  # fmt: skip
+            start[source] = used
+            for wanted in (1, 0):  # what is not negative comes first: others go through that only
+                for at in range(size[1]):
+                    node = touched[at]
+                    if (far[node] >= 0) == (wanted == 1):
+                        tails[used], lengths[used], steps[used] = node, far[node], via[node]
+                        used += 1
+                if wanted:
+                    bend[source] = used
+            if far[source] < 0:  # the negative cycle itself
+                tails[used], lengths[used], steps[used] = source, far[source], via[source]
+                used += 1
+            stop[source] = used
+            if again < 0:
+                state[source] = 2
+                depth -= 1
+            elif again == source or depth == 1:
+                break
+            else:
+                depth -= 1
+        if again >= 0:
+            break
+    pending = stack[:0]
+    if again >= 0:
+        pending = stack[depth - 1 : deepest]
+    return Propagation(again < 0, start, stop, tails[:used], lengths[:used], steps[:used], pending.copy(), again)

@@ -81,7 +81,8 @@ def _reason(network: STN, form: NormalForm, found: Propagation) -> NegativeCycle
 
 def _path(form: NormalForm, found: Propagation, start: int, source: int) -> list[tuple[int, int, int]]:
     """The edges (tail, head, number) of the reduced path from a node to a negative node."""
-    via, node = found.via[found.row[source]], start
+    rows = slice(found.start[source], found.stop[source])
+    via, node = dict(zip(found.tail[rows].tolist(), found.via[rows].tolist(), strict=True)), start
     steps: list[tuple[int, int, int]] = []
     while not steps or node != source:
         edge = int(via[node])
@@ -126,7 +127,8 @@ def _weight(form: NormalForm, found: Propagation, step: tuple[int, int, int]) ->
     tail, head, edge = step
     edges, links = form.head.size, form.contingent.size
     if edge <= -2:
-        return int(found.distance[found.row[head], tail])
+        rows = slice(found.start[head], found.stop[head])
+        return int(found.length[rows][found.tail[rows] == tail][0])
     if edge < edges:
         return int(form.weight[edge])
     return 0 if edge < edges + links else -int(form.slack[edge - edges - links])

@@ -83,7 +83,7 @@ def _check_causal(network: STN) -> None:
 
 
 @kernel
-def _gather(form: NormalForm, found: Propagation, start: Ints, low: Ints) -> tuple[Ints, Ints]:  # noqa: C901
+def _gather(form: NormalForm, found: Propagation, start: Ints, low: Ints) -> tuple[Ints, Ints]:
     """All edges (n, n) and waits (n, k), each as a weight [ticks]; every ``A'`` is merged into its ``A`` (k,).
 
     Args:
@@ -100,16 +100,11 @@ def _gather(form: NormalForm, found: Propagation, start: Ints, low: Ints) -> tup
         tail, head, weight = form.tail[edge], form.head[edge], form.weight[edge]
         if tail < count and head < count:
             edges[tail, head] = min(edges[tail, head], weight)
-    for source in range(found.row.size):
-        row = found.row[source]
-        if row < 0:
-            continue
+    for source in range(found.start.size):
         link = source - count
         head, before = (source, 0) if link < 0 else (start[link], low[link])
-        for node in range(found.row.size):
-            length = found.distance[row, node]
-            if length >= FAR or node == source:
-                continue
+        for path in range(found.start[source], found.stop[source]):
+            node, length = found.tail[path], found.length[path]
             tail, after = (node, 0) if node < count else (start[node - count], low[node - count])
             if tail == head:
                 continue
