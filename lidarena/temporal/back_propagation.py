@@ -142,14 +142,15 @@ def _lower(
 
 
 @kernel
-def _latest_first(form: NormalForm, cut_start: Ints, cut_edge: Ints, negative: NDArray[np.bool_]) -> Ints:
-    """The negative nodes, each after those that negative edges put later, so that few have to wait for others."""
+def _latest_first(form: NormalForm, negative: NDArray[np.bool_]) -> Ints:
+    """The negative nodes, each after those that come no earlier by an edge, so that few have to wait for others."""
     count, nodes = form.points, negative.size
+    cut_start, cut_edge = _sorted_by_head(form.head, form.weight - 1, nodes, True)
     order, state = np.empty(nodes, np.int64), np.zeros(nodes, np.int64)
     stack, entry = np.empty(nodes, np.int64), np.zeros(nodes, np.int64)
     found = 0
     for first in range(nodes):
-        if not negative[first] or state[first]:
+        if state[first]:
             continue
         depth, stack[0], state[first] = 1, first, 1
         while depth > 0:
@@ -162,10 +163,10 @@ def _latest_first(form: NormalForm, cut_start: Ints, cut_edge: Ints, negative: N
             else:
                 depth -= 1
                 order[found] = node
-                found += 1
+                found += int(negative[node])
                 continue
             entry[node] += 1
-            if negative[step] and state[step] == 0:
+            if state[step] == 0:
                 stack[depth], state[step] = step, 1
                 depth += 1
     return order[:found]
@@ -211,7 +212,7 @@ def back_propagate(form: NormalForm) -> Propagation:  # noqa: C901 - one loop ov
             negative[count + link] = True
     for node in range(nodes):
         negative[node] |= cut_start[node + 1] > cut_start[node]
-    order = _latest_first(form, cut_start, cut_edge, negative)
+    order = _latest_first(form, negative)
     rows = order.size
     fars, vias = np.empty((4, nodes), np.int64), np.empty((4, nodes), np.int64)
     heaps, places = np.empty((4, nodes), np.int64), np.empty((4, nodes), np.int64)
