@@ -65,9 +65,10 @@ def load_map(path: str | os.PathLike[str]) -> OccupancyMap:
     """Load a ``map_server`` map in trinary mode.
 
     A pixel v has the occupancy p = (255 - v) / 255, or v / 255 with ``negate``; p > ``occupied_thresh`` is occupied,
-    p < ``free_thresh`` free, all else unknown. Transparent pixels are unknown. In a picture of nothing but the savers'
-    own greys (0, 205, 254, 255), 205 is unknown whatever the threshold: some savers print a ``free_thresh`` of 0.25
-    beside it, by which all unmapped surroundings (p = 0.196) would read as free.
+    p < ``free_thresh`` free, all else unknown. Transparent pixels are unknown. In a picture that has the savers' own
+    grey for free cells (254), or nothing but their greys (0, 205, 254, 255), 205 is unknown whatever the threshold:
+    some savers print a ``free_thresh`` of 0.25 beside it, by which all unmapped surroundings (p = 0.196) would read as
+    free, though someone drew a line of another grey into it.
 
     Args:
         path: The YAML file.
@@ -82,7 +83,8 @@ def load_map(path: str | os.PathLike[str]) -> OccupancyMap:
     occupancy = np.full(grey.shape, -1, dtype=np.int8)
     occupancy[p < description.free_thresh] = 0
     occupancy[p > description.occupied_thresh] = 100
-    if not description.negate and np.isin(grey, (OCCUPIED_GREY, UNKNOWN_GREY, FREE_GREY, 255)).all():
+    saved = np.any(grey == FREE_GREY) or np.isin(grey, (OCCUPIED_GREY, UNKNOWN_GREY, 255)).all()
+    if saved and not description.negate:
         occupancy[grey == UNKNOWN_GREY] = -1
     occupancy[transparent] = -1
     return OccupancyMap(occupancy[::-1].copy(), description.resolution, description.origin)
@@ -173,7 +175,8 @@ def save_map(
 
 def _read_yaml(file: Path, where: str) -> Mapping[Any, Any]:
     try:
-        entries = yaml.safe_load(file.read_text(encoding="utf-8"))
+        text = file.read_text(encoding="utf-8")
+        entries, root = yaml.safe_load(text), yaml.compose(text, yaml.SafeLoader)
     except OSError as error:
         raise MapError(f"{where} cannot be read: {error.strerror}") from error
     except (yaml.YAMLError, ValueError, RecursionError) as error:
@@ -182,6 +185,9 @@ def _read_yaml(file: Path, where: str) -> Mapping[Any, Any]:
         raise MapError(f"{where} is not YAML text: it cannot be understood{line}") from error
     if not isinstance(entries, dict):
         raise MapError(f"{where} holds no keys; {', '.join(_REQUIRED)} are needed")
+    keys = [key.value for key, _ in root.value] if isinstance(root, yaml.MappingNode) else []
+    if twice := sorted({str(key) for key in keys if keys.count(key) > 1}):
+        raise MapError(f"{where} has the key {twice[0]!r} twice; each may stand there once")
     return entries
 
 

@@ -14,6 +14,11 @@ from lidarena.world.extent import check_extent
 _PNG = b"\x89PNG\r\n\x1a\n"
 _PNM_FIELDS = re.compile(rb"P[25](?:\s+|\s*#[^\n]*\n)+(\d+)(?:\s+|\s*#[^\n]*\n)+(\d+)(?:\s+|\s*#[^\n]*\n)+(\d+)\s")
 
+_COMMENTS = re.compile(rb"\s*#[^\n]*\n")
+"""What may stand after the maximum, besides one byte of white space."""
+_TRAILING = 2
+"""Bytes that editors leave at the end of a file."""
+
 
 def read_picture(path: Path, where: str, resolution: float) -> tuple[NDArray[np.float64], NDArray[np.bool_]]:
     """Read a PGM (P2, P5) or PNG picture.
@@ -36,6 +41,7 @@ def read_picture(path: Path, where: str, resolution: float) -> tuple[NDArray[np.
         raise MapError(f"{where} names the picture {str(path)!r}, which cannot be read: {error.strerror}") from error
     picture = f"the picture {str(path)!r} of {where}"
     width, height = _checked_size(data, picture)
+    data = _plain_header(data, width, height)
     check_extent(where, height, width, resolution)
     try:
         pixels = cv2.imdecode(np.frombuffer(data, dtype=np.uint8), cv2.IMREAD_UNCHANGED)
@@ -74,6 +80,25 @@ def _checked_size(data: bytes, picture: str) -> tuple[int, int]:
     if not whole:
         raise MapError(f"{picture} is cut short after {len(data)} bytes; a whole PGM or PNG file is needed")
     return width, height
+
+
+def _plain_header(data: bytes, width: int, height: int) -> bytes:
+    """A binary PGM with the plainest header; other pictures as they are.
+
+    A header may end in CRLF, or in a comment after the maximum. One byte of white space alone belongs to it by the
+    format, so that readers take the rest for pixels; that the file is longer than declared gives it away.
+    """
+    match = _PNM_FIELDS.match(data)
+    if data[:2] != b"P5" or match is None:
+        return data
+    first, size = match.end(), width * height
+    for longer in _COMMENTS.finditer(data, match.end() - 1):
+        if longer.start() > first or len(data) - first <= size + _TRAILING:
+            break
+        first = longer.end()
+    if len(data) - first > size and data[first - 1 : first + 1] == b"\r\n":
+        first += 1
+    return b"P5\n%d %d\n255\n" % (width, height) + data[first : first + size]
 
 
 def _png_size(data: bytes) -> tuple[int, int]:

@@ -80,6 +80,8 @@ def test_thresholds_are_strict(tmp_path: Path) -> None:
 def test_the_savers_grey_is_unknown_even_below_a_free_thresh_of_a_quarter(tmp_path: Path) -> None:
     saved = pgm(np.array([[0, 205, 254]]))
     assert load_map(write(tmp_path, saved, free_thresh=0.25)).occupancy.tolist() == [[100, -1, 0]]
+    retouched = pgm(np.array([[0, 205, 254, 230]]))
+    assert load_map(write(tmp_path, retouched, free_thresh=0.25)).occupancy.tolist() == [[100, -1, 0, 0]]
     continuous = pgm(np.array([[0, 205, 240]]))
     assert load_map(write(tmp_path, continuous, free_thresh=0.25)).occupancy.tolist() == [[100, 0, 0]]
 
@@ -304,3 +306,10 @@ def test_recorded_maps_load(name: str) -> None:
     assert shares[1] > 0.1
     assert 0.0005 < shares[2] < 0.2
     assert sum(shares) == pytest.approx(1.0)
+
+
+def test_a_key_that_stands_there_twice_is_refused(tmp_path: Path) -> None:
+    file = write(tmp_path, pgm(PIXELS))
+    file.write_text(file.read_text() + "resolution: 0.1\n")
+    with pytest.raises(MapError, match="has the key 'resolution' twice"):
+        load_map(file)

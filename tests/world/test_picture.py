@@ -64,6 +64,26 @@ def test_what_is_no_whole_picture_is_refused(tmp_path: Path, data: bytes, says: 
     assert "\n" not in str(refusal.value)
 
 
+@pytest.mark.parametrize(
+    "header",
+    [
+        b"P5\r\n8 6\r\n255\r\n",
+        b"P5\n8 6\n255\n# made by a saver\n",
+        b"P5\n# before\n8 6\n255 # behind\n# and more\n",
+        b"P5 8 6 255 ",
+        b"P5\n8 6\n255\n",
+    ],
+)
+@pytest.mark.parametrize("first", [0, 10, 13, 35])
+@pytest.mark.parametrize("trailing", [b"", b"\n"])
+def test_pixels_begin_behind_the_whole_header(tmp_path: Path, header: bytes, first: int, trailing: bytes) -> None:
+    grey = GREY.copy()
+    grey[0, :2] = first
+    data = header + grey.tobytes() + trailing
+    found, _ = read_picture(saved(tmp_path / "map.pgm", data), "the map", 0.05)
+    np.testing.assert_array_equal(found, grey)
+
+
 def test_a_picture_that_is_not_there_is_named(tmp_path: Path) -> None:
     with pytest.raises(MapError, match=r"the map names the picture '.*gone.pgm', which cannot be read"):
         read_picture(tmp_path / "gone.pgm", "the map", 0.05)
