@@ -9,8 +9,7 @@ import pytest
 from lidarena.envs import ExplorationEnv
 from lidarena.envs.exploration.state import ExplorationCore
 from lidarena.slam.rbpf.estimator import ParticleFilterEstimator
-from lidarena.world.floorplan import START_CLEARANCE
-from lidarena.world.sensors import Sensing, sense
+from lidarena.world.sensors import sense
 
 ACTIONS = [0] * 8 + [1] * 8 + [0] * 8 + [2] * 8
 
@@ -24,12 +23,10 @@ def flat(prefix: str, value: Any) -> dict[str, np.ndarray]:
 def sense_then_filter(core: ExplorationCore, shift: tuple[float, float, float]) -> Callable[..., None]:
     """What the kernel does in one go, in two: the true pose is moved after the sensors were read."""
 
-    def perceive(before: np.ndarray, first: int, last: int, active: np.ndarray) -> None:
+    def perceive(first: int, last: int, active: np.ndarray) -> None:
         assert isinstance(core.estimator, ParticleFilterEstimator)
         sensors, filters = core.sensors, core.estimator.filters
-        place = (core.beam, START_CLEARANCE, core.lidar.geometry, core.lidar.directions)
-        poses, period = core.physics.poses, core.options.decision_period
-        sense(0, Sensing(before, poses, core.plan, core.streams, core._noise, *place, sensors, period))
+        sense(0, core._sensing)
         core.physics.poses += shift
         filters.step(0, core.options.decision_period, sensors.readings[0, 0], sensors.scans[0, 0], core.streams[0])
 
