@@ -63,11 +63,17 @@ def add_pair(
         width = min(int(nearby / (distance * abs(fan.step))) + 1, _MOST_BEAMS)
         nix, niy = float(normals[i, b, 0]), float(normals[i, b, 1])
         nx, ny = cos * nix - sin * niy, sin * nix + cos * niy
-        best, chosen = limit, -1
+        best, chosen = math.inf, -1
         for k in range(max(middle - width, 0), min(middle + width + 1, fan.beams)):
             dx, dy = x - points[j, k, 0], y - points[j, k, 1]
             d = dx * dx + dy * dy
-            if d < best and weights[j, k] > 0.0 and nx * normals[j, k, 0] + ny * normals[j, k, 1] > _SAME_SIDE:
+            if d >= best or weights[j, k] == 0.0:
+                continue
+            if nx * normals[j, k, 0] + ny * normals[j, k, 1] <= _SAME_SIDE:
+                continue
+            across = dx * normals[j, k, 0] + dy * normals[j, k, 1]
+            extent = max(nearby, float(store.extents[j, k]))
+            if across * across < limit and d - across * across < extent * extent:
                 best, chosen = d, k
         system[11] += 1.0
         if chosen < 0:

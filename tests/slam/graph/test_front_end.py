@@ -30,3 +30,13 @@ def test_a_scan_of_another_place_is_not_believed() -> None:
     front.add(np.array([0.1, 0.0, 0.0]), room_ranges((0.0, 0.0, 0.0), 4.0, 4.0))
     assert front.held == [False, True]
     np.testing.assert_allclose(front.poses[1], [0.1, 0.0, 0.0])
+
+
+def test_the_heading_does_not_drift_along_a_corridor() -> None:
+    front = FrontEnd(FAN)
+    for k in range(60):
+        x = -12.0 + 0.2 * k
+        ranges = room_ranges((x, 0.25, 0.0), 60.0, 2.0)
+        noise = np.random.default_rng(k).normal(0.0, 0.01, FAN.beams)
+        front.add(np.array([0.2 * k, 0.0, -0.01 * k]), (ranges + noise).astype(np.float32))
+    assert abs(front.poses[-1][2]) < 0.01

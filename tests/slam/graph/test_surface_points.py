@@ -37,3 +37,22 @@ def test_room_for_more_keeps_what_there_is() -> None:
     more = enlarged_points(store)
     assert more.points.shape == (2, FAN.beams, 2)
     np.testing.assert_array_equal(more.points[0], store.points[0])
+
+
+def test_walls_far_ahead_of_a_corridor_have_normals() -> None:
+    store = empty_points(1, FAN.beams)
+    enter_scan(store, 0, room_ranges((0, 0, 0), 40.0, 2.0), FAN, 20.0)
+    far = (np.abs(store.points[0, :, 0]) > 6.0) & (np.abs(store.points[0, :, 0]) < 12.0)
+    assert far.sum() >= 6
+    np.testing.assert_allclose(np.abs(store.normals[0, far, 1]), 1.0, atol=1e-3)
+    assert (store.weights[0, far] > 0.9).all() and (store.extents[0, far] > 0.3).all()
+
+
+def test_surfaces_end_at_a_jump_of_the_range() -> None:
+    ranges = np.full(FAN.beams, 4.0, np.float32)
+    ranges[:90] = 2.0
+    store = empty_points(1, FAN.beams)
+    enter_scan(store, 0, ranges, FAN, 20.0)
+    for beam in (89, 90):
+        outward = store.points[0, beam] / np.linalg.norm(store.points[0, beam])
+        assert float(outward @ store.normals[0, beam]) < -0.98
