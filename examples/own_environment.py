@@ -1,7 +1,4 @@
-"""An environment of one's own trains like the built-in ones, here with PPO that knows which actions are allowed.
-
-python examples/own_environment.py        the same from YAML: env: {id: "own_environment:own/Walk-v0"}
-"""
+"""An environment of one's own trains like the built-in ones, here with PPO that knows which actions are allowed."""
 
 import tempfile
 
@@ -9,7 +6,7 @@ import gymnasium as gym
 import numpy as np
 
 from lidarena import agents
-from lidarena.base.yaml_config import check_config
+from lidarena.evaluation import run_episode
 
 
 class Walk(gym.Env):
@@ -33,15 +30,10 @@ class Walk(gym.Env):
 
 gym.register("own/Walk-v0", entry_point=Walk, max_episode_steps=40)
 
+# from YAML: env: {id: "own_environment:own/Walk-v0"}
 if __name__ == "__main__":
     settings = {"env": "own/Walk-v0", "algorithm": "MaskablePPO", "num_envs": 4, "total_steps": 4096}
     settings |= {"maskable_ppo": {"n_steps": 64}, "out": f"{tempfile.mkdtemp()}/walk"}
-    folder = agents.train(check_config(settings, agents.TrainingConfig), progress=False)
     env = gym.make("own/Walk-v0")
-    policy = agents.load(folder, env)
-    observation, info = env.reset(seed=0)
-    steps, success = 0, False
-    while not success:
-        observation, _, success, _, info = env.step(policy.act(observation, info))
-        steps += 1
-    print(f"the trained agent needs {steps} steps")
+    policy = agents.load(agents.train(settings, progress=False), env)
+    print(f"the trained agent needs {run_episode(env, policy, seed=0).measures['steps']:.0f} steps")

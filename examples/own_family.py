@@ -1,14 +1,10 @@
-"""A family of one's own: its environment, and what is measured and drawn of it, compared as the built-in ones are.
-
-python examples/own_family.py
-"""
+"""A family of one's own: its environment, and what is measured and drawn of it, compared as the built-in ones are."""
 
 import gymnasium as gym
 import numpy as np
 
-from lidarena.base.yaml_config import check_config
 from lidarena.envs.registration import Family, Registration, register_family
-from lidarena.evaluation import ComparisonConfig, FamilyMeasures, Measure, RobotTrace, compare
+from lidarena.evaluation import FamilyMeasures, Measure, RobotTrace, compare
 
 
 class Buoys(gym.Env):
@@ -20,20 +16,18 @@ class Buoys(gym.Env):
     def reset(self, *, seed=None, options=None):
         super().reset(seed=seed)
         self.boat, self.rounded, self.buoy = np.zeros(2), 0, self.np_random.uniform(-9, 9, 2)
-        return self.observe(), self.info()
+        return self.observe()
 
     def step(self, action):
         self.boat = np.clip(self.boat + action, -10, 10)
         near = np.linalg.norm(self.buoy - self.boat) < 1.0
         if near:
             self.rounded, self.buoy = self.rounded + 1, self.np_random.uniform(-9, 9, 2)
-        return self.observe(), float(near), False, False, self.info()
+        observation, info = self.observe()
+        return observation, float(near), False, False, info
 
     def observe(self):
-        return (self.buoy - self.boat).astype(np.float32)
-
-    def info(self):
-        return {"pose": np.append(self.boat, 0.0), "buoys": self.rounded}
+        return (self.buoy - self.boat).astype(np.float32), {"pose": np.append(self.boat, 0.0), "buoys": self.rounded}
 
 
 class BuoyMeasures(FamilyMeasures):
@@ -51,7 +45,7 @@ class Straight:
         self.reset()
 
     def reset(self, seed=None):
-        self.finished = False
+        pass
 
     def act(self, observation, info):
         return observation / max(1.0, np.abs(observation).max())
@@ -62,7 +56,6 @@ ENTRY = Registration("own_family:Buoys", max_episode_steps=200)
 register_family(Family("buoys", {"own/Buoys-v0": ENTRY}, measures="own_family:MEASURES"))
 
 if __name__ == "__main__":
-    policies = ["random", {"name": "own_family:Straight", "label": "straight"}]
-    file = {"envs": ["own_family:own/Buoys-v0"], "policies": policies, "out": "results/own_family"}
-    for row in compare(check_config(file, ComparisonConfig)).rows:
+    file = {"envs": ["own_family:own/Buoys-v0"], "policies": ["random", "own_family:Straight"]}
+    for row in compare(file | {"out": "results/own_family"}).rows:
         print(f"{row.policy}: {row.metrics['buoys'].interval.mean:.1f} buoys")

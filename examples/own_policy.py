@@ -6,8 +6,7 @@ python examples/own_policy.py             the same from YAML: policies: [frontie
 import gymnasium as gym
 import numpy as np
 
-from lidarena.base.yaml_config import check_config
-from lidarena.evaluation import ComparisonConfig, compare
+from lidarena.evaluation import compare
 
 
 class RoomSeeker:
@@ -31,5 +30,5 @@ if __name__ == "__main__":
     env = {"id": "lidarena/Env1-v0", "keywords": {"action": "continuous", "max_episode_steps": 300}}
     policies = ["random", {"name": "own_policy:RoomSeeker", "label": "room seeker"}]
     file = {"envs": [env], "policies": policies, "episodes": 4, "out": "results/own_policy"}
-    for row in compare(check_config(file, ComparisonConfig)).rows:
+    for row in compare(file).rows:
         print(f"{row.policy}: {row.metrics['completeness'].interval.mean:.0%} of Env-1 mapped")

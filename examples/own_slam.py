@@ -1,12 +1,10 @@
-"""A SLAM estimator of one's own in plain NumPy: dead reckoning and a map of rays, on which frontier exploration drives.
-
-python examples/own_slam.py
-"""
+"""A SLAM estimator of one's own in NumPy: dead reckoning and a map of rays, on which frontier exploration drives."""
 
 import gymnasium as gym
 import numpy as np
 
 import lidarena
+from lidarena.evaluation import run_episode
 
 
 class RayMapper:
@@ -38,10 +36,5 @@ class RayMapper:
 
 if __name__ == "__main__":
     env = gym.make("lidarena/Env1-v0", slam=RayMapper, odometry_noise=0.2, max_episode_steps=600)
-    policy = lidarena.baselines.make("frontier", env)
-    observation, info = env.reset(seed=0)
-    over = False
-    while not (over or policy.finished):
-        observation, _, terminated, truncated, info = env.step(policy.act(observation, info))
-        over = terminated or truncated
-    print(f"frontier explored {info['completeness']:.0%} on the map of RayMapper in {info['time']:.0f} s")
+    episode = run_episode(env, lidarena.baselines.make("frontier", env), seed=0)
+    print(f"frontier explored {episode.measures['completeness']:.0%} on the map of RayMapper")

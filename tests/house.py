@@ -109,6 +109,21 @@ def is_kernel(node: ast.AST) -> bool:
     return any(_JIT & set(re.findall(r"\w+", ast.unparse(decorator))) for decorator in decorators)
 
 
+def is_documented(one: Definition) -> bool:
+    """Whether a docstring says what something is, and of a constructor what it takes: there or in the class's.
+
+    An overload's is that of the function.
+    """
+    if ast.get_docstring(one.node) or any(ast.unparse(name) == "overload" for name in one.node.decorator_list):
+        return True
+    if not one.name.endswith(".__init__") or isinstance(one.node, ast.ClassDef):
+        return False
+    owner = one.name.removesuffix(".__init__").rpartition(".")[2]
+    classes = (node for node in ast.walk(tree(one.path)) if isinstance(node, ast.ClassDef) and node.name == owner)
+    told = ast.get_docstring(next(classes)) or ""
+    return all(re.search(rf"\b{parameter.arg}\b", told) for parameter in parameters(one.node, by_keyword=True))
+
+
 def parameters(node: ast.FunctionDef | ast.AsyncFunctionDef, by_keyword: bool) -> list[ast.arg]:
     """A function's parameters except ``self`` and ``cls``."""
     given = [*node.args.posonlyargs, *node.args.args, *(node.args.kwonlyargs if by_keyword else [])]

@@ -1,6 +1,5 @@
 """The programs in examples/ run, print what they promise, and are short."""
 
-import ast
 import importlib.util
 import os
 import re
@@ -14,7 +13,7 @@ ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PROMISED = {
     "own_environment": r"the trained agent needs 10 steps",
-    "own_family": r"straight: \d\d",
+    "own_family": r"Straight: \d\d",
     "own_lidar": r"exploration: [6-9]\d%.*False\narena: .* True\ncorridor: .*683 beams",
     "own_map": r"hall 2 with \d pillars: [5-9]\d% mapped",
     "own_policy": r"room seeker: [3-9]\d% of Env-1 mapped",
@@ -24,7 +23,8 @@ PROMISED = {
 }
 OTHER_LIBRARIES = {"rllib_ppo": "ray", "torchrl_ppo": "torchrl"}
 """What examples need beside what the package itself needs; tried by hand where it is not installed."""
-MOST_LINES = 40
+MOST_LINES = {"own_family": 60}
+"""A family is an environment, its measures and its picture."""
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
@@ -43,26 +43,12 @@ def test_an_example_runs(path: Path, tmp_path: Path) -> None:
     assert re.search(PROMISED.get(path.stem, "."), done.stdout), done.stdout
 
 
-def lines_of_code(path: Path) -> int:
-    """Lines without blanks, comments, docstrings, and the demonstration under ``if __name__ == "__main__"``."""
-    text = path.read_text()
-    tree, skipped = ast.parse(text), set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Module | ast.ClassDef | ast.FunctionDef) and ast.get_docstring(node) is not None:
-            skipped |= set(range(node.body[0].lineno, (node.body[0].end_lineno or 0) + 1))
-        if isinstance(node, ast.If) and ast.unparse(node.test) == "__name__ == '__main__'":
-            skipped |= set(range(node.lineno, (node.end_lineno or 0) + 1))
-    lines = enumerate(text.splitlines(), 1)
-    return sum(
-        bool(line.strip()) and not line.lstrip().startswith("#") and number not in skipped for number, line in lines
-    )
-
-
 @pytest.mark.parametrize(
     "path", [path for path in EXAMPLES if path.stem.startswith("own_")], ids=lambda path: path.stem
 )
 def test_what_a_stranger_writes_is_short(path: Path) -> None:
-    assert lines_of_code(path) <= MOST_LINES
+    """All lines count: docstrings, imports, blank ones and the demonstration."""
+    assert len(path.read_text().splitlines()) <= MOST_LINES.get(path.stem, 40)
 
 
 def test_the_readme_names_every_example() -> None:

@@ -14,6 +14,11 @@ _SIGNALS = (signal.SIGINT, signal.SIGTERM)
 class TrainingStopped(KeyboardInterrupt):
     """The training was stopped; what it says tells where it stands and how to go on.
 
+    Args:
+        folder: Run folder.
+        step: At which the training was stopped.
+        resumable_from: Step of the last checkpoint; None if there is none.
+
     Attributes:
         folder: Run folder.
         step: At which the training was stopped.

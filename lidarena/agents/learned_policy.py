@@ -22,16 +22,21 @@ _NEVER = -1e8
 class LearnedPolicy:
     """A trained agent; `lidarena.agents.load` makes it.
 
-    Attributes:
+    Args:
         network: Stable-Baselines3's or sb3-contrib's policy.
-        observation_space: Of the environment that it was trained in.
-        action_space: Of the environment that it was trained in.
-        env_id: Gymnasium id of that environment.
+        env_id: Gymnasium id of the environment that it was trained in.
         env_keywords: Keywords of that environment. Those that change what an observation or action means
             (``observation``, ``action``, …) belong to any environment that the policy is to drive in.
         training: What is known of the training: algorithm, steps, seed, and so on.
         deterministic: Whether `act` takes the most probable action or draws one.
         normalizer: Of the observations; None if the network sees them as they are.
+
+    Raises:
+        PolicyFileError: Actions are to be drawn from a network that gives no probabilities.
+
+    Attributes:
+        observation_space: Of the environment that it was trained in.
+        action_space: Of that environment.
         memory: What a recurrent network remembers of the episode; None at its beginning, and for other networks.
     """
 

@@ -51,7 +51,13 @@ class Silence:
 
 
 class Lines:
-    """A plain line every `LINE_EVERY` seconds, for log files."""
+    """A plain line every `LINE_EVERY` seconds, for log files.
+
+    Args:
+        total: Steps of the whole training.
+        start: Steps that it has already.
+        stream: Where to.
+    """
 
     def __init__(self, total: int, start: int, stream: TextIO) -> None:
         self._total, self._stream = total, stream
@@ -83,7 +89,7 @@ class Lines:
 
 
 class Bar:
-    """A bar with rate and remaining time."""
+    """A bar with rate and remaining time; its arguments ``total``, ``start`` and ``stream`` are those of `Lines`."""
 
     def __init__(self, total: int, start: int, stream: TextIO) -> None:
         columns = (TextColumn("{task.fields[speed]}"), TextColumn("{task.fields[summary]}"))

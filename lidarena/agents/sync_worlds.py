@@ -15,6 +15,9 @@ Arrays = dict[str, NDArray[Any]]
 class SyncWorlds(SyncVectorEnv):
     """Gymnasium's ``SyncVectorEnv`` whose worlds begin their next episode in the step in which one ends.
 
+    Args:
+        makers: Each makes one world.
+
     Attributes:
         restorable: Whether every world has ``get_state()`` (a dictionary of arrays) and ``set_state(state)``, without
             which the batch cannot be written down either.

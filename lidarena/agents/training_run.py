@@ -43,7 +43,14 @@ class _Stopped(Exception):  # noqa: N818  not an error: it carries the wish to s
 
 
 class TrainingRun:
-    """A training in its folder: what happens between two updates."""
+    """A training in its folder: what happens between two updates.
+
+    Args:
+        config: What is trained.
+        folder: Run folder.
+        model: The learner, new or restored.
+        seconds: That the training took before it was interrupted [s].
+    """
 
     def __init__(self, config: TrainingConfig, folder: Path, model: BaseAlgorithm, seconds: float) -> None:
         self.config, self.folder, self.model = config, folder, model

@@ -1,9 +1,12 @@
-"""Printing on terminals that know less than Unicode."""
+"""Programs on a terminal: what they print where it knows less than Unicode, and what they return."""
 
 import codecs
 import sys
 import unicodedata
+from collections.abc import Callable
 from io import TextIOWrapper
+
+from lidarena.base.errors import LidarenaError
 
 _PLAIN = {
     "×": "x",
@@ -31,6 +34,26 @@ def make_output_printable() -> None:
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, TextIOWrapper):
             stream.reconfigure(errors=_HANDLER)
+
+
+def exit_status(work: Callable[[], object]) -> int:
+    """Do the work of a program that writes when all is done; what stops it is told on standard error in a sentence.
+
+    Args:
+        work: What is to be done.
+
+    Returns:
+        0, 2 for a refusal, 130 after Ctrl-C.
+    """
+    try:
+        work()
+    except LidarenaError as refusal:
+        print(refusal, file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("interrupted; nothing was written", file=sys.stderr)
+        return 130
+    return 0
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:

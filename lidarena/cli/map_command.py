@@ -14,7 +14,7 @@ from lidarena.slam.logs.mapping import LogMap, map_log
 from lidarena.slam.logs.reading import read_recording
 from lidarena.slam.logs.recorded_log import RANGE_UNITS, LogOptions, RecordedLog
 from lidarena.slam.logs.relations import check_overlap, read_relations, relation_errors
-from lidarena.slam.logs.replay_files import check_folder
+from lidarena.slam.logs.results_folder import check_folder
 
 
 def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:

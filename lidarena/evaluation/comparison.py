@@ -1,12 +1,14 @@
 """A whole comparison: from its file to the folder with tables, pictures and videos."""
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from rich.console import Console
 
+from lidarena.base.yaml_config import check_config
 from lidarena.evaluation.comparison_config import ComparisonConfig, PolicyEntry
 from lidarena.evaluation.participants import check
 from lidarena.evaluation.pictures import Cell, draw_pictures
@@ -58,13 +60,13 @@ class Comparison:
         return told
 
 
-def compare(config: ComparisonConfig, console: Console | None = None) -> Comparison:
+def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | None = None) -> Comparison:
     """Run every policy in every environment on the same seeds, and write what came of it.
 
     The folder appears when everything is in it; earlier results of the same name are kept under another one.
 
     Args:
-        config: What to compare.
+        config: What to compare: from `load_config`, or a dictionary of what a YAML file would hold.
         console: Where progress is reported; nowhere if None.
 
     Returns:
@@ -75,6 +77,8 @@ def compare(config: ComparisonConfig, console: Console | None = None) -> Compari
         EpisodeError: An environment or a policy raised.
         WriteError: The place of the results is not writable or full.
     """
+    if isinstance(config, Mapping):
+        config = check_config(config, ComparisonConfig)
     console = console or Console(quiet=True)
     check_folder(config.folder)
     check(config)

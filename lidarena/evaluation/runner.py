@@ -33,7 +33,12 @@ THREAD_VARIABLES = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"
 
 
 class EpisodeError(RuntimeError):
-    """An environment or a policy raised; the message names both and the seed, ``report`` holds the traceback."""
+    """An environment or a policy raised.
+
+    Args:
+        sentence: The message; it names both and the seed.
+        report: The traceback, kept as an attribute.
+    """
 
     def __init__(self, sentence: str, report: str = "") -> None:
         super().__init__(sentence)

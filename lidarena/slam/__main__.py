@@ -12,13 +12,13 @@ from pathlib import Path
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
-from lidarena.base.errors import LidarenaError
-from lidarena.base.terminal import make_output_printable
+from lidarena.base.terminal import exit_status, make_output_printable
 from lidarena.slam.logs.carmen import read_log
 from lidarena.slam.logs.relations import RelationErrors, check_overlap, read_relations, relation_errors
 from lidarena.slam.logs.replay import Progress as Advance
 from lidarena.slam.logs.replay import Replay, replay
-from lidarena.slam.logs.replay_files import check_folder, save_replay
+from lidarena.slam.logs.replay_files import FILES, save_replay
+from lidarena.slam.logs.results_folder import check_folder
 
 
 def main(arguments: list[str] | None = None) -> int:
@@ -26,20 +26,12 @@ def main(arguments: list[str] | None = None) -> int:
     make_output_printable()
     options = _parser().parse_args(arguments)
     out = options.out or Path("results") / Path(options.log).name.split(".")[0]
-    try:
-        _replay(options, Path(out))
-    except LidarenaError as refusal:
-        print(refusal, file=sys.stderr)
-        return 2
-    except KeyboardInterrupt:
-        print("interrupted; nothing was written", file=sys.stderr)
-        return 130
-    return 0
+    return exit_status(lambda: _replay(options, Path(out)))
 
 
 def _replay(options: argparse.Namespace, out: Path) -> None:
     """Read and check everything, then do the work, then write."""
-    check_folder(out)
+    check_folder(out, FILES)
     relations = read_relations(options.relations) if options.relations else None
     log = read_log(options.log, options.skip_torn)
     if relations is not None:

@@ -10,11 +10,14 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.base.heap import pop, push
 from lidarena.base.jit import inlined, kernel
 
 FAR = np.iinfo(np.int64).max // 4
 """The distance of what is not connected."""
 NO_EDGE = -1
+NEW, UNDER_WAY, DONE = 0, 1, 2
+"""How far back-propagation from a node is."""
 
 Ints = NDArray[np.int64]
 
@@ -38,6 +41,48 @@ class NormalForm(NamedTuple):
     """(k,) ``y − x`` [ticks]; 0 where the link is a plain requirement"""
     points: int
     """``n``"""
+
+
+class _Graph(NamedTuple):
+    """The edges by where they end: those into node ``v`` are ``edge[start[v]]`` to ``edge[start[v + 1] − 1]``."""
+
+    in_start: Ints
+    """(n + k + 1,) of the edges that are not negative"""
+    in_edge: Ints
+    cut_start: Ints
+    """(n + k + 1,) of the negative ones"""
+    cut_edge: Ints
+    lower_link: Ints
+    """(n + k,) the link whose lower-case edge ends in a node; −1 where none does"""
+    negative: NDArray[np.bool_]
+    """(n + k,) whether a negative or an upper-case edge ends in a node"""
+
+
+class _Frame(NamedTuple):
+    """The back-propagation from one node, all arrays but the last one (n + k,)."""
+
+    far: Ints
+    """The shortest way from every node [ticks]; ``FAR`` where there is none yet"""
+    via: Ints
+    """Its first edge"""
+    heap: Ints
+    """The nodes at negative distance that are still to be gone through, see ``base.heap``"""
+    place: Ints
+    touched: Ints
+    """The nodes that have a way"""
+    sizes: Ints
+    """(2,) how many nodes are in ``heap`` and in ``touched``"""
+
+
+class _Paths(NamedTuple):
+    """The paths as in `Propagation`; those of a node that are not negative come first, up to ``bend`` (n + k,)."""
+
+    start: Ints
+    bend: Ints
+    stop: Ints
+    tail: Ints
+    length: Ints
+    via: Ints
 
 
 class Propagation(NamedTuple):
@@ -64,43 +109,6 @@ class Propagation(NamedTuple):
     """The node that came again; −1 where none did."""
 
 
-@inlined
-def _rise(heap: Ints, place: Ints, distance: Ints, at: int) -> None:
-    """Move a node up in the heap (p,) until its parent is nearer; ``place`` (p,) says where each node is."""
-    node = heap[at]
-    while at > 0:
-        above = (at - 1) >> 1
-        if distance[heap[above]] <= distance[node]:
-            break
-        heap[at] = heap[above]
-        place[heap[at]] = at
-        at = above
-    heap[at] = node
-    place[node] = at
-
-
-@inlined
-def _take_least(heap: Ints, place: Ints, distance: Ints, size: int) -> None:
-    """Take the nearest of ``size`` nodes out of the heap."""
-    place[heap[0]] = -1
-    node, at, size = heap[size - 1], 0, size - 1
-    if size == 0:
-        return
-    while True:
-        below = 2 * at + 1
-        if below >= size:
-            break
-        if below + 1 < size and distance[heap[below + 1]] < distance[heap[below]]:
-            below += 1
-        if distance[heap[below]] >= distance[node]:
-            break
-        heap[at] = heap[below]
-        place[heap[at]] = at
-        at = below
-    heap[at] = node
-    place[node] = at
-
-
 @kernel
 def _sorted_by_head(head: Ints, weight: Ints, nodes: int, negative: bool) -> tuple[Ints, Ints]:
     """The negative or the other edges, grouped by where they end: starts (nodes + 1,), edge numbers."""
@@ -119,26 +127,19 @@ def _sorted_by_head(head: Ints, weight: Ints, nodes: int, negative: bool) -> tup
     return starts, edges
 
 
-@inlined
-def _lower(
-    node: int, length: int, edge: int, far: Ints, via: Ints, heap: Ints, place: Ints, touched: Ints, sizes: Ints
-) -> None:
-    """Note a shorter path from a node; the heap holds only nodes at negative distance.
-
-    ``sizes`` (2,) counts the nodes in the heap and those in ``touched``, which have a path.
-    """
-    if length >= far[node]:
-        return
-    if far[node] == FAR:
-        touched[sizes[1]] = node
-        sizes[1] += 1
-    far[node], via[node] = length, edge
-    if length >= 0:
-        return
-    if place[node] < 0:
-        heap[sizes[0]], place[node] = node, sizes[0]
-        sizes[0] += 1
-    _rise(heap, place, far, place[node])
+@kernel
+def _graph_of(form: NormalForm) -> _Graph:
+    links, nodes = form.contingent.size, form.points + form.contingent.size
+    in_start, in_edge = _sorted_by_head(form.head, form.weight, nodes, False)
+    cut_start, cut_edge = _sorted_by_head(form.head, form.weight, nodes, True)
+    lower_link, negative = np.full(nodes, -1, np.int64), np.zeros(nodes, np.bool_)
+    for link in range(links):
+        if form.slack[link] > 0:
+            lower_link[form.contingent[link]] = link
+            negative[form.points + link] = True
+    for node in range(nodes):
+        negative[node] |= cut_start[node + 1] > cut_start[node]
+    return _Graph(in_start, in_edge, cut_start, cut_edge, lower_link, negative)
 
 
 @kernel
@@ -183,120 +184,125 @@ def _grown(array: Ints, needed: int) -> Ints:
 
 
 @kernel
-def _deeper(frames: Ints, depth: int) -> Ints:
-    """The frames (depths, n + k), or twice as many with the same ones in front."""
+def _deeper(frames: NDArray[np.int64], depth: int) -> NDArray[np.int64]:
+    """The frames (depths, 5, n + k), or twice as many with the same ones in front."""
     if depth < frames.shape[0]:
         return frames
-    larger = np.empty((2 * frames.shape[0], frames.shape[1]), np.int64)
+    larger = np.empty((2 * frames.shape[0], 5, frames.shape[2]), np.int64)
     larger[: frames.shape[0]] = frames
     return larger
 
 
+@inlined
+def _lower(frame: _Frame, node: int, length: int, edge: int) -> None:
+    """Note a shorter path from a node."""
+    if length >= frame.far[node]:
+        return
+    if frame.far[node] == FAR:
+        frame.touched[frame.sizes[1]] = node
+        frame.sizes[1] += 1
+    frame.far[node], frame.via[node] = length, edge
+    if length < 0:
+        frame.sizes[0] = push(frame.heap, frame.place, frame.far, frame.sizes[0], node)
+
+
+@inlined
+def _begin(form: NormalForm, graph: _Graph, frame: _Frame, source: int) -> None:
+    """Start at a node, with the negative edges and the upper-case edge into it."""
+    frame.far[:], frame.place[:], frame.sizes[:] = FAR, -1, 0
+    frame.far[source], frame.via[source] = 0, NO_EDGE
+    for entry in range(graph.cut_start[source], graph.cut_start[source + 1]):
+        edge = graph.cut_edge[entry]
+        _lower(frame, form.tail[edge], form.weight[edge], edge)
+    link = source - form.points
+    if link >= 0 and form.slack[link] > 0:
+        _lower(frame, form.contingent[link], -form.slack[link], form.head.size + form.slack.size + link)
+
+
+@inlined
+def _go_on(form: NormalForm, graph: _Graph, paths: _Paths, frame: _Frame, source: int, state: Ints) -> int:
+    """Shorten paths to the source until none is negative, or one leads through a negative node that is not done.
+
+    Returns:
+        That node; −1 where the source is done.
+    """
+    while frame.sizes[0] > 0:
+        node = frame.heap[0]
+        if state[node] == UNDER_WAY or (graph.negative[node] and state[node] == NEW):
+            return int(node)
+        pop(frame.heap, frame.place, frame.far, frame.sizes[0])
+        frame.sizes[0] -= 1
+        length = frame.far[node]
+        for entry in range(graph.in_start[node], graph.in_start[node + 1]):
+            edge = graph.in_edge[entry]
+            _lower(frame, form.tail[edge], length + form.weight[edge], edge)
+        for entry in range(paths.start[node], paths.bend[node]):
+            _lower(frame, paths.tail[entry], length + paths.length[entry], -2 - node)
+        link = graph.lower_link[node]
+        if link >= 0 and form.points + link != source:
+            _lower(frame, form.points + link, length, form.head.size + link)
+    return -1
+
+
+@inlined
+def _keep(paths: _Paths, frame: _Frame, source: int, used: int) -> int:
+    """Write the paths to a node behind the ``used`` ones; returns how many there are then."""
+    paths.start[source] = used
+    for negative in (False, True):
+        if negative:
+            paths.bend[source] = used
+        for at in range(frame.sizes[1]):
+            node = frame.touched[at]
+            if (frame.far[node] < 0) == negative:
+                paths.tail[used], paths.length[used], paths.via[used] = node, frame.far[node], frame.via[node]
+                used += 1
+    if frame.far[source] < 0:  # the negative cycle itself
+        paths.tail[used], paths.length[used], paths.via[used] = source, frame.far[source], frame.via[source]
+        used += 1
+    paths.stop[source] = used
+    return used
+
+
 @kernel
-def back_propagate(form: NormalForm) -> Propagation:  # noqa: C901 - one loop over a stack of frames
+def back_propagate(form: NormalForm) -> Propagation:
     """Morris (2014), Fig. 2: shorten every path that ends in a negative edge until its length is non-negative.
 
     Returns:
         Whether the network is dynamically controllable; if not, ``pending`` and ``again`` hold a semi-reducible
         negative cycle.
     """
-    count, links, edges = form.points, form.contingent.size, form.head.size
-    nodes = count + links
-    in_start, in_edge = _sorted_by_head(form.head, form.weight, nodes, False)
-    cut_start, cut_edge = _sorted_by_head(form.head, form.weight, nodes, True)
-    lower_link = np.full(nodes, -1, np.int64)
-    negative = np.zeros(nodes, np.bool_)
-    for link in range(links):
-        if form.slack[link] > 0:
-            lower_link[form.contingent[link]] = link
-            negative[count + link] = True
-    for node in range(nodes):
-        negative[node] |= cut_start[node + 1] > cut_start[node]
-    order = _latest_first(form, negative)
-    rows = order.size
-    fars, vias = np.empty((4, nodes), np.int64), np.empty((4, nodes), np.int64)
-    heaps, places = np.empty((4, nodes), np.int64), np.empty((4, nodes), np.int64)
-    touches, sizes = np.empty((4, nodes), np.int64), np.zeros((rows, 2), np.int64)
-    state = np.zeros(nodes, np.int64)  # 0 new, 1 under way, 2 done
-    stack = np.empty(rows, np.int64)
+    graph = _graph_of(form)
+    nodes = graph.negative.size
+    order = _latest_first(form, graph.negative)
+    frames, sizes = np.empty((4, 5, nodes), np.int64), np.zeros((order.size, 2), np.int64)
+    state, stack = np.full(nodes, NEW, np.int64), np.empty(order.size, np.int64)
     start, bend, stop = np.zeros(nodes, np.int64), np.zeros(nodes, np.int64), np.zeros(nodes, np.int64)
-    tails, lengths, steps = np.empty(8 * nodes, np.int64), np.empty(8 * nodes, np.int64), np.empty(8 * nodes, np.int64)
-    used, again, deepest = 0, -1, 0
-
+    tail, length, via = np.empty(8 * nodes, np.int64), np.empty(8 * nodes, np.int64), np.empty(8 * nodes, np.int64)
+    used, again, depth, deepest = 0, -1, 0, 0
     for first in order:
-        if state[first] == 2:
-            continue
-        depth, stack[0] = 1, first
+        if state[first] == NEW:
+            depth, stack[0] = 1, first
         while depth > 0:
-            source = stack[depth - 1]
-            far, via, heap, place = fars[depth - 1], vias[depth - 1], heaps[depth - 1], places[depth - 1]
-            touched, size = touches[depth - 1], sizes[depth - 1]
-            if state[source] == 0:
-                state[source] = 1
-                far[:], place[:], size[:] = FAR, -1, 0
-                far[source], via[source] = 0, NO_EDGE
-                for entry in range(cut_start[source], cut_start[source + 1]):
-                    edge = cut_edge[entry]
-                    _lower(form.tail[edge], form.weight[edge], edge, far, via, heap, place, touched, size)
-                if source >= count and form.slack[source - count] > 0:
-                    link = source - count
-                    end, upper = form.contingent[link], edges + links + link
-                    _lower(end, -form.slack[link], upper, far, via, heap, place, touched, size)
-            nested = False
-            while size[0] > 0 and again < 0:
-                node = heap[0]
-                if state[node] == 1:
-                    again, deepest = node, depth
-                    break
-                if negative[node] and state[node] == 0:
-                    stack[depth] = node
-                    fars, vias, touches = _deeper(fars, depth), _deeper(vias, depth), _deeper(touches, depth)
-                    heaps, places = _deeper(heaps, depth), _deeper(places, depth)
-                    depth += 1
-                    nested = True
-                    break
-                _take_least(heap, place, far, size[0])
-                size[0] -= 1
-                length = far[node]
-                for entry in range(in_start[node], in_start[node + 1]):
-                    edge = in_edge[entry]
-                    _lower(form.tail[edge], length + form.weight[edge], edge, far, via, heap, place, touched, size)
-                for entry in range(start[node], bend[node]):
-                    if length + lengths[entry] < far[tails[entry]]:
-                        _lower(tails[entry], length + lengths[entry], -2 - node, far, via, heap, place, touched, size)
-                link = lower_link[node]
-                if link >= 0 and count + link != source:
-                    _lower(count + link, length, edges + link, far, via, heap, place, touched, size)
-            if nested:
+            source, rows = stack[depth - 1], frames[depth - 1]
+            frame = _Frame(rows[0], rows[1], rows[2], rows[3], rows[4], sizes[depth - 1])
+            paths = _Paths(start, bend, stop, tail, length, via)
+            if state[source] == NEW:
+                state[source] = UNDER_WAY
+                _begin(form, graph, frame, source)
+            waits_for = _go_on(form, graph, paths, frame, source, state) if again < 0 else -1
+            if waits_for >= 0 and state[waits_for] == NEW:
+                stack[depth], frames, depth = waits_for, _deeper(frames, depth), depth + 1
                 continue
-            tails, lengths, steps = (
-                _grown(tails, used + nodes + 1),
-                _grown(lengths, used + nodes + 1),
-                _grown(steps, used + nodes + 1),
-            )  # fmt: skip
-            start[source] = used
-            for wanted in (1, 0):  # what is not negative comes first: others go through that only
-                for at in range(size[1]):
-                    node = touched[at]
-                    if (far[node] >= 0) == (wanted == 1):
-                        tails[used], lengths[used], steps[used] = node, far[node], via[node]
-                        used += 1
-                if wanted:
-                    bend[source] = used
-            if far[source] < 0:  # the negative cycle itself
-                tails[used], lengths[used], steps[used] = source, far[source], via[source]
-                used += 1
-            stop[source] = used
-            if again < 0:
-                state[source] = 2
-                depth -= 1
-            elif again == source or depth == 1:
+            if waits_for >= 0:
+                again, deepest = waits_for, depth
+            wanted = used + nodes + 1
+            tail, length, via = _grown(tail, wanted), _grown(length, wanted), _grown(via, wanted)
+            used = _keep(_Paths(start, bend, stop, tail, length, via), frame, source, used)
+            if again == source:
                 break
-            else:
-                depth -= 1
+            state[source] = DONE
+            depth -= 1
         if again >= 0:
             break
-    pending = stack[:0]
-    if again >= 0:
-        pending = stack[depth - 1 : deepest]
-    return Propagation(again < 0, start, stop, tails[:used], lengths[:used], steps[:used], pending.copy(), again)
+    pending = stack[depth - 1 : deepest] if again >= 0 else stack[:0]
+    return Propagation(again < 0, start, stop, tail[:used], length[:used], via[:used], pending.copy(), again)

@@ -20,7 +20,10 @@ _MARGIN = 0.02
 class Physics(Spaces):
     """Worlds in which robots move, each of them as a whole: all its robots are near something, or none is.
 
-    The constructor's arguments are those of ``Spaces``.
+    Args:
+        worlds: How many; see ``Spaces``.
+        robots: In each of them.
+        spec: What they are; None: the TurtleBot3 Burger.
 
     Attributes:
         touched: ``(worlds,)`` whether some robot of a world touched anything in the last ``advance``.

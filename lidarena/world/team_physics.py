@@ -20,7 +20,10 @@ _WALL, _ROBOT = 0, 1  # pymunk's collision types
 class TeamPhysics(Spaces):
     """Worlds in which each robot is near something or not, and tells what it touches.
 
-    The constructor's arguments are those of ``Spaces``.
+    Args:
+        worlds: How many; see ``Spaces``.
+        robots: In each of them.
+        spec: What they are.
 
     Attributes:
         touched_wall: ``(worlds, robots)`` whether a robot touched a wall in the last ``advance``.

@@ -18,7 +18,7 @@ from lidarena.agents.learners import first_world_seed
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.errors import ConfigError
 from tests.agents.fake_batch import RestorableLineBatch
-from tests.agents.training_cases import curve, equal, small, weights
+from tests.agents.training_cases import SMALL, curve, equal, small, weights
 
 SUFFIXES = {".yaml", ".json", ".safetensors", ".csv", ".npz"}
 
@@ -34,6 +34,13 @@ def test_a_run_folder_holds_everything(tmp_path: Path) -> None:
     assert policy.act(np.zeros(3, np.float32), {}) in (0, 1, 2)
     assert policy.training["steps"] == 512 and policy.training["seed"] == 0 and policy.training["episodes"] > 0
     assert [path.name for path in (folder / "checkpoints").iterdir()] == ["step_0000000000512"]
+
+
+def test_a_dictionary_is_a_configuration_too(tmp_path: Path) -> None:
+    folder = train({**SMALL, "out": str(tmp_path / "run")}, progress=False)
+    assert load_config(folder / "config.yaml", TrainingConfig) == small(tmp_path / "run")
+    with pytest.raises(ConfigError, match=r"'num_env'.*'num_envs'"):
+        train({**SMALL, "num_env": 4})
 
 
 def test_the_learning_curve_has_a_row_an_update(tmp_path: Path) -> None:

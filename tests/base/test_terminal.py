@@ -7,7 +7,8 @@ import sys
 
 import pytest
 
-from lidarena.base.terminal import make_output_printable
+from lidarena.base.errors import ConfigError
+from lidarena.base.terminal import exit_status, make_output_printable
 
 
 @pytest.mark.parametrize(
@@ -55,3 +56,27 @@ Console().print(table)
     environment = os.environ | {"PYTHONIOENCODING": "ascii", "LC_ALL": "C"}
     done = subprocess.run([sys.executable, "-c", code], env=environment, capture_output=True, text=True, check=True)
     assert "a x b ^" in done.stdout and "-1" in done.stdout and done.stdout.isascii()
+
+
+@pytest.mark.parametrize(
+    ("stopped_by", "status", "told"),
+    [
+        (None, 0, ""),
+        (ConfigError("seed is 'abc'"), 2, "seed is 'abc'\n"),
+        (KeyboardInterrupt(), 130, "interrupted; nothing was written\n"),
+    ],
+)
+def test_a_program_returns_what_stopped_it(
+    stopped_by: BaseException | None, status: int, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def work() -> None:
+        if stopped_by is not None:
+            raise stopped_by
+
+    assert exit_status(work) == status
+    assert capsys.readouterr().err == told
+
+
+def test_a_fault_of_the_program_itself_is_not_hidden() -> None:
+    with pytest.raises(ZeroDivisionError):
+        exit_status(lambda: 1 // 0)

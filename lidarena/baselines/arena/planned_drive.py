@@ -19,6 +19,9 @@ _REACHED = 1e-6
 class PlannedDrive(ABC):
     """Plans at the first decision of an episode, then follows the path with a step of the robot's for a chord.
 
+    Args:
+        env: The arena, or what wraps it.
+
     Attributes:
         finished: The path ends short of the goal, and the robot is within a step of its end.
         path: (S, 2) what it follows [m]; empty before the first decision.

@@ -35,6 +35,15 @@ def wall_costs(grid: FloorGrid) -> NDArray[np.float64]:
 class PlannedFleet:
     """Plans once, when an episode begins, and drives by the clock.
 
+    Args:
+        env: The fleet's environment, or what wraps it.
+        planning_radius: How much room a robot is given [m]; None: what its own radius needs.
+        step: The time that a move from one place to the next is given [s].
+        time_limit: How long planning may take [s].
+
+    Raises:
+        ConfigError: A number is out of range.
+
     Attributes:
         finished: Whether there is no plan to drive by; ``message`` says why.
         message: What the planner has to say of its plan.

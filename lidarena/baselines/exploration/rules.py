@@ -23,6 +23,15 @@ class RuledExplorer(ChoosingExplorer):
 
     The blacklist is ``frontier``'s. The frontier that is driven to is kept as long as no other one is better by
     ``persistence``.
+
+    Args:
+        env: The environment, or what wraps it.
+        persistence: By how much a frontier must be better than the one that is driven to [m].
+        min_frontier_size: Shorter ones are left out [m].
+        **settings: Of the rule.
+
+    Raises:
+        ConfigError: A length is out of range.
     """
 
     def __init__(self, env: Any, *, persistence: float, min_frontier_size: float, **settings: float) -> None:

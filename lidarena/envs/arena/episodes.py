@@ -27,6 +27,10 @@ _FAR = 1.5
 class ArenaEpisodes:
     """Runs episodes in ``worlds`` arenas, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
+    Args:
+        worlds: How many.
+        options: The checked keywords.
+
     Attributes:
         core: The arenas.
         recorder: Paths for the picture, None unless the worlds are drawn.

@@ -28,6 +28,10 @@ _GAIN = 0.001
 class ExplorationEpisodes:
     """Runs episodes in ``worlds`` worlds, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
+    Args:
+        worlds: How many.
+        options: The checked keywords.
+
     Attributes:
         core: The worlds.
         recorder: Paths for the picture, None unless the worlds are drawn.

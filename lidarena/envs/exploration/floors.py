@@ -88,7 +88,15 @@ def make_floors(
 
 
 class FixedFloors:
-    """Floor plans that never change, shared by all worlds; see ``Floors`` and ``make_floors``."""
+    """Floor plans that never change, shared by all worlds; see ``Floors`` and ``make_floors``.
+
+    Args:
+        plans: The floor plans.
+        lidar: Of the robots.
+        resolution: Side of a cell [m].
+        robot: Which has to get to what counts as reachable.
+        at_start: Whether it begins at a plan's own start.
+    """
 
     def __init__(
         self, plans: list[Floorplan], lidar: LidarSpec, resolution: float, robot: RobotSpec, at_start: bool
@@ -124,6 +132,15 @@ class DrawnFloors:
     An episode draws a number from its world's generator; the plan is what the ``PlanGenerator`` makes of that number.
     So the number is all that there is to save, and how much chance a plan takes changes nothing else of the episode.
     All maps have room for the largest plan, whichever plans there are meanwhile.
+
+    Args:
+        worlds: How many.
+        sources: What each world's plans come from; None where a world has none yet.
+        start: Pose at the beginning, in place of a plan's own; None for that.
+        lidar: See `FixedFloors`.
+        resolution: See `FixedFloors`.
+        robot: See `FixedFloors`.
+        at_start: See `FixedFloors`.
     """
 
     def __init__(

@@ -29,6 +29,10 @@ class ExplorationCore:
 
     World ``i`` depends on nothing but its own generator and commands.
 
+    Args:
+        worlds: How many.
+        options: The checked keywords.
+
     Attributes:
         physics: The true poses; everything that the robot may know is in the attributes below.
         sensors: Scans, odometry, paths, collisions.

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.heap import pop, push
 from lidarena.base.jit import kernel
-from lidarena.planning.grid.heap import pop, push
 
 # the four straight steps first, so that the 4-connected search takes a prefix
 _STEPS = np.array([(0, 1), (1, 0), (0, -1), (-1, 0), (1, 1), (1, -1), (-1, -1), (-1, 1)], dtype=np.int64)

@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.heap import pop, push
 from lidarena.base.jit import kernel
-from lidarena.planning.grid.heap import pop, push
 from lidarena.planning.grid.surroundings import Surroundings, gap_at
 
 _BIN = 0.07  # side of a position bin (m)

@@ -1,6 +1,6 @@
 """A binary heap of (key, item) pairs for searches in space and time, where an item may be in it more than once.
 
-The heap of the two-dimensional searches (``grid.heap``) needs an entry for every item that there could be;
+The heap of the two-dimensional searches (``base.heap``) needs an entry for every item that there could be;
 here only the fraction of states that a search meets costs memory. Equal keys come out in an order that depends on
 the pushes alone.
 """

@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from lidarena.base.files import replace_folder, write_figure, write_text
+from lidarena.base.files import write_figure, write_text
 from lidarena.slam.logs.mapping import LogMap
 from lidarena.slam.logs.posegraph_file import save_g2o
 from lidarena.slam.logs.recorded_log import RecordedLog
 from lidarena.slam.logs.relations import RelationErrors
-from lidarena.slam.logs.replay_files import check_folder
 from lidarena.slam.logs.replay_picture import draw_map
+from lidarena.slam.logs.results_folder import write_folder
 from lidarena.slam.logs.trajectory import save_kitti, save_tum
 from lidarena.world.map_server import save_map
 
@@ -34,22 +34,14 @@ MAP_FILES = (
 def save_log_map(
     folder: str | os.PathLike[str], log: RecordedLog, result: LogMap, errors: RelationErrors | None = None
 ) -> Path | None:
-    """Write ``MAP_FILES``; the folder appears whole, and an earlier one is kept as ``folder.1``, ``folder.2``.
+    """Write ``MAP_FILES`` as `write_folder` does, which says what is returned and raised.
 
     Args:
         folder: Where to.
         log: The log.
-        result: What was made of it.
+        result: Its map.
         errors: Against relations, if there are any.
-
-    Returns:
-        Where the earlier results are now, None if there were none.
-
-    Raises:
-        LogError: The folder holds something else.
-        WriteError: The disk is full or the place is not writable; what was there is left as it was.
     """
-    check_folder(folder, MAP_FILES)
     picture = draw_loops(log, result)
 
     def fill(there: Path) -> None:
@@ -60,7 +52,7 @@ def save_log_map(
         write_figure(there / "picture.png", picture)
         write_text(there / "results.json", json.dumps(map_results(log, result, errors), indent=2) + "\n")
 
-    return replace_folder(os.fspath(folder), fill)
+    return write_folder(folder, MAP_FILES, fill)
 
 
 def draw_loops(log: RecordedLog, result: LogMap) -> "Figure":

@@ -2,66 +2,35 @@
 
 import json
 import os
-from collections.abc import Collection
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.files import check_writable, replace_folder, write_figure, write_text
-from lidarena.slam.logs.carmen import LogError, RecordedLog
+from lidarena.base.files import write_figure, write_text
+from lidarena.slam.logs.carmen import RecordedLog
 from lidarena.slam.logs.relations import RelationErrors
 from lidarena.slam.logs.replay import Replay
 from lidarena.slam.logs.replay_picture import draw_replay
+from lidarena.slam.logs.results_folder import write_folder
 from lidarena.slam.logs.trajectory import save_tum
 from lidarena.world.map_server import save_map
 
 FILES = ("map.yaml", "map.pgm", "trajectory.tum", "picture.png", "results.json")
 
 
-def check_folder(folder: str | os.PathLike[str], files: Collection[str] = FILES) -> None:
-    """Refuse, before the work begins, a folder that holds other people's files.
-
-    Args:
-        folder: Where results are to go.
-        files: What an earlier run may have left there.
-
-    Raises:
-        LogError: It is a file, or a folder with anything but an earlier replay in it.
-        WriteError: It cannot be written to.
-    """
-    place = Path(folder)
-    check_writable(place)
-    if place.exists() and not place.is_dir():
-        raise LogError(f"{str(place)!r} is a file; a folder is needed for the results")
-    if place.is_dir() and (others := sorted(set(os.listdir(place)) - set(files))):
-        raise LogError(
-            f"folder {str(place)!r} holds {others[0]!r}; an empty or new one, or an earlier replay's is needed"
-        )
-
-
 def save_replay(
     folder: str | os.PathLike[str], log: RecordedLog, result: Replay, errors: RelationErrors | None = None
 ) -> Path | None:
-    """Write ``map.yaml`` and ``map.pgm``, ``trajectory.tum``, ``picture.png`` and ``results.json``.
-
-    The folder appears whole. An earlier replay's is kept: it moves to ``folder.1``, ``folder.2``, …
+    """Write ``FILES`` as `write_folder` does, which says what is returned and raised.
 
     Args:
-        folder: Where to.
-        log: The log.
-        result: What was made of it.
-        errors: Against relations, if there are any.
-
-    Returns:
-        Where the earlier replay is now, None if there was none.
-
-    Raises:
-        LogError: The folder holds something else.
-        WriteError: The disk is full or the place is not writable; what was there is left as it was.
+        folder: Where to; the one of an earlier replay is kept under another name.
+        log: What was replayed.
+        result: What the filter made of it.
+        errors: Of the trajectory against relations, if there are any.
     """
-    check_folder(folder)
     picture = draw_replay(log, result)
 
     def fill(there: Path) -> None:
@@ -70,7 +39,7 @@ def save_replay(
         write_figure(there / "picture.png", picture)
         write_text(there / "results.json", json.dumps(results(result, errors), indent=2) + "\n")
 
-    return replace_folder(os.fspath(folder), fill)
+    return write_folder(folder, FILES, fill)
 
 
 def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, Any]:

@@ -1,11 +1,12 @@
 import numpy as np
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from lidarena.planning.grid.grid_search import path_costs
 from lidarena.planning.grid.way_lengths import LEG, first_leg, way_lengths
 
 
+@settings(deadline=None)  # the first call loads or compiles the kernels
 @given(st.integers(0, 10**6), st.integers(1, 30), st.integers(1, 30), st.sampled_from([0.5, 0.75, 1.0]))
 def test_lengths_are_those_of_a_plain_dijkstra_to_the_bit(seed: int, rows: int, columns: int, free: float) -> None:
     rng = np.random.default_rng(seed)

@@ -44,6 +44,10 @@ _TRIES = 5
 class GoalChoiceEpisodes:
     """Runs episodes of choices in ``worlds`` worlds, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
+    Args:
+        worlds: How many.
+        options: The checked keywords.
+
     Attributes:
         core: The exploration worlds.
         preference: (worlds,) how much certainty is worth.

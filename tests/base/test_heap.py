@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from lidarena.planning.grid.heap import pop, push
+from lidarena.base.heap import pop, push
 
 
 @settings(max_examples=100, deadline=None)

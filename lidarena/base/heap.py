@@ -1,53 +1,59 @@
-"""An indexed binary heap for numba kernels: the open list of every best-first search in this room.
+"""An indexed binary heap for numba kernels: the open list of best-first searches.
 
 Items are the integers 0 .. n-1. The caller owns the arrays, so that a kernel allocates them once:
 
-- ``heap`` (n,) int64: the items, ``heap[0]`` the one with the smallest key;
-- ``where`` (n,) int64: an item's position in ``heap``, -1 while it is not in it;
-- ``keys`` (n,) float64: an item's key, written by the caller before :func:`push`.
+- ``heap`` (n,) integers: the items, ``heap[0]`` the one with the smallest key;
+- ``where`` (n,) integers: an item's position in ``heap``, -1 while it is not in it;
+- ``keys`` (n,) numbers: an item's key, written by the caller before :func:`push`.
 
 Equal keys come out in an order that depends on the pushes alone, so a search is deterministic.
 """
 
+from typing import TypeAlias
+
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import inlined
+
+Ints: TypeAlias = NDArray[np.int32] | NDArray[np.int64]
+Keys: TypeAlias = NDArray[np.int64] | NDArray[np.float64]
 
 
-@kernel
-def _rise(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], i: int) -> None:
-    item = heap[i]
-    while i > 0:
-        above = (i - 1) // 2
+@inlined
+def _rise(heap: Ints, where: Ints, keys: Keys, at: int) -> None:
+    item = heap[at]
+    while at > 0:
+        above = (at - 1) >> 1
         if keys[heap[above]] <= keys[item]:
             break
-        heap[i] = heap[above]
-        where[heap[i]] = i
-        i = above
-    heap[i] = item
-    where[item] = i
+        heap[at] = heap[above]
+        where[heap[at]] = at
+        at = above
+    heap[at] = item
+    where[item] = at
 
 
-@kernel
-def _sink(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], size: int) -> None:
-    item = heap[0]
-    i = 0
-    while 2 * i + 1 < size:
-        below = 2 * i + 1
+@inlined
+def _sink(heap: Ints, where: Ints, keys: Keys, size: int) -> None:
+    item, at = heap[0], 0
+    while True:
+        below = 2 * at + 1
+        if below >= size:
+            break
         if below + 1 < size and keys[heap[below + 1]] < keys[heap[below]]:
             below += 1
         if keys[heap[below]] >= keys[item]:
             break
-        heap[i] = heap[below]
-        where[heap[i]] = i
-        i = below
-    heap[i] = item
-    where[item] = i
+        heap[at] = heap[below]
+        where[heap[at]] = at
+        at = below
+    heap[at] = item
+    where[item] = at
 
 
-@kernel
-def push(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], size: int, item: int) -> int:
+@inlined
+def push(heap: Ints, where: Ints, keys: Keys, size: int, item: int) -> int:
     """Insert ``item``, or move it up after its key has become smaller.
 
     Args:
@@ -68,8 +74,8 @@ def push(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.flo
     return size
 
 
-@kernel
-def pop(heap: NDArray[np.int64], where: NDArray[np.int64], keys: NDArray[np.float64], size: int) -> int:
+@inlined
+def pop(heap: Ints, where: Ints, keys: Keys, size: int) -> int:
     """Take the item with the smallest key out; the heap is then one smaller and must not have been empty.
 
     Args:
