@@ -39,8 +39,6 @@ class BuoyMeasures(FamilyMeasures):
 
 
 class Straight:
-    """Sails straight to the next buoy."""
-
     def __init__(self, env):
         self.reset()
 
