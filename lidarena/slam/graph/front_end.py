@@ -22,6 +22,8 @@ _POINTS = 60
 """Points of a scan in the correlative search."""
 _ALIGNED = 180
 """Points of a scan that are aligned, about."""
+_FEWEST_POINTS = 10
+"""Scans of fewer points are not matched."""
 
 
 @dataclass(frozen=True)
@@ -52,118 +54,137 @@ class FrontEnd:
     Attributes:
         fan: The beams.
         parameters: Settings.
-        store: All scans.
-        count: How many.
+        store: The keyframes' scans in their order, and the last scan behind them.
         poses: Of all scans, as matched.
-        odometry: Of all scans, as the wheels tell.
         keyframes: Which scans are keyframes.
-        scores: How well each scan fitted, 0 to 1.
+        information: Of each keyframe, how surely its match holds it where it is: upper triangle (6,) of the normal
+            equations, in the frame of the poses.
         held: Whether a scan's match was not believed, so that the wheels alone tell its pose.
     """
 
     fan: BeamFan
     parameters: FrontEndParameters = field(default_factory=FrontEndParameters)
-    count: int = 0
     poses: list[Floats] = field(default_factory=list)
-    odometry: list[Floats] = field(default_factory=list)
     keyframes: list[int] = field(default_factory=list)
-    scores: list[float] = field(default_factory=list)
+    information: list[Floats] = field(default_factory=list)
     held: list[bool] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.store: SurfacePoints = empty_points(256, self.fan.beams)
         self.grid = empty_grid()
-        self.drawn: list[int] = []
+        self.drawn = 0
+        self.odometry, self.system = np.zeros(3), np.zeros(16)
 
-    def add(self, odometry: Floats, ranges: NDArray[np.float32]) -> bool:
+    @property
+    def count(self) -> int:
+        """Scans so far."""
+        return len(self.poses)
+
+    def node(self, keyframe: int) -> Floats:
+        """(3,) pose of a keyframe, by its place in their order."""
+        return self.poses[self.keyframes[keyframe]]
+
+    def add(self, odometry: Floats, ranges: NDArray[np.float32], unsure: bool = False) -> bool:
         """Match a scan.
 
         Args:
             odometry: (3,) where the laser is by the wheels.
             ranges: (B,) [m]; 0 is no return.
+            unsure: The wheels do not tell how the laser came here from the scan before.
 
         Returns:
             Whether it has become a keyframe.
         """
-        k = self.count
-        if k == len(self.store.points):
+        if len(self.keyframes) == len(self.store.points):
             self.store = enlarged_points(self.store)
-        points = enter_scan(self.store, k, ranges, self.fan, self.parameters.usable_range)
-        self.count += 1
-        self.odometry.append(odometry)
-        if k == 0:
+        slot = len(self.keyframes)
+        points = enter_scan(self.store, slot, ranges, self.fan, self.parameters.usable_range)
+        self.system[:] = 0.0
+        if not self.poses:
             pose, score = odometry.copy(), 1.0
         else:
-            pose, score = self._match(k, between(self.odometry[k - 1], odometry), points)
+            pose, score = self._match(slot, self._told(odometry, unsure), points, unsure)
         pose[2] = wrapped(pose[2])
+        self.odometry = odometry
         self.poses.append(pose)
-        self.scores.append(score)
         self.held.append(score < self.parameters.lost_score)
-        return self._keep(k, points)
+        return self._keep(points)
 
-    def _match(self, k: int, motion: Floats, points: int) -> tuple[Floats, float]:
-        """Pose and score of scan k after a motion told by the wheels."""
+    def _told(self, odometry: Floats, unsure: bool) -> Floats:
+        """The motion since the last scan: by the wheels, or going on as before."""
+        if not unsure:
+            return between(self.odometry, odometry)
+        return between(self.poses[-2], self.poses[-1]) if len(self.poses) > 1 else np.zeros(3)
+
+    def _match(self, slot: int, motion: Floats, points: int, unsure: bool) -> tuple[Floats, float]:
+        """Pose and score of the scan in a slot after a motion."""
         guess = compose(self.poses[-1], motion)
-        still = math.hypot(motion[0], motion[1]) < 1e-3 and abs(motion[2]) < 1e-3
-        if points < 10 or not self.keyframes:
+        if points < _FEWEST_POINTS or not self.keyframes:
             return guess, 0.0
-        shift, turn = motion_spread(motion)
-        spread = np.array([shift, turn])
-        window = np.array([max(0.1, min(2.0 * shift, 0.3)), max(0.03, min(2.0 * turn, 0.6))])
-        if still:
-            window = np.array([0.05, 0.02])
-        found = self._search(k, guess, window, spread)
+        spread, window = _believed(motion, unsure)
+        found = self._search(slot, guess, window, spread)
         if found[3] < self.parameters.low_score:
-            wide = self._search(k, guess, np.array([max(0.5, 2 * shift), max(0.6, 3.0 * turn)]), spread)
+            wider = np.array([max(0.5, 2.0 * spread[0]), max(0.6, 3.0 * spread[1])])
+            wide = self._search(slot, guess, wider, spread)
             found = wide if wide[3] > found[3] + 0.03 else found
         if found[3] < self.parameters.lost_score:
             return guess, float(found[3])
         others = self._references(found[:3])
-        pose, system = found[:3].copy(), np.zeros(16)
-        poses = np.array([self.poses[o] for o in others])
-        prior = np.array([4.0 / shift**2, 4.0 / shift**2, 1.0 / turn**2])
+        pose, poses = found[:3].copy(), np.array([self.node(int(o)) for o in others])
+        prior = np.array([4.0, 4.0, 1.0]) / spread[[0, 0, 1]] ** 2
         stride = max(self.fan.beams // _ALIGNED, 1)
-        align(self.store, self.fan, k, others, poses, pose, prior, _ROUNDS, stride, system)
+        align(self.store, self.fan, slot, others, poses, pose, prior, _ROUNDS, stride, self.system)
         moved = between(found[:3], pose)
         if math.hypot(moved[0], moved[1]) > 0.3 or abs(moved[2]) > 0.2:
             return found[:3].copy(), float(found[3])
         return pose, float(found[3])
 
-    def _search(self, k: int, guess: Floats, window: Floats, spread: Floats) -> Floats:
+    def _search(self, slot: int, guess: Floats, window: Floats, spread: Floats) -> Floats:
         """Best pose in a window, coarsely, then finely."""
         coarse = np.array([0.1, 0.035]) if window[0] > 0.05 else np.array([0.05, 0.02])
-        found = best_in_window(self.grid, self.store, k, guess, window, coarse, spread, _POINTS)
+        found = best_in_window(self.grid, self.store, slot, guess, window, coarse, spread, _POINTS)
         fine = np.array([0.05, 0.02]), np.array([0.05, 0.01])
-        return best_in_window(self.grid, self.store, k, found[:3], *fine, np.array([10.0, 10.0]), _POINTS)
+        return best_in_window(self.grid, self.store, slot, found[:3], *fine, np.array([10.0, 10.0]), _POINTS)
 
     def _references(self, pose: Floats) -> NDArray[np.int64]:
-        """The keyframes that see best what is seen from a pose, among the last ones."""
-        recent = self.keyframes[-_DRAWN:]
-        others = np.array([self.poses[k] for k in recent])
+        """The keyframes that see best what is seen from a pose, among the last ones, by their order."""
+        recent = np.arange(max(len(self.keyframes) - _DRAWN, 0), len(self.keyframes))
+        others = np.array([self.node(int(k)) for k in recent])
         away = np.hypot(others[:, 0] - pose[0], others[:, 1] - pose[1])
         cost = away + 1.0 * np.abs(wrapped(others[:, 2] - pose[2])) + 0.01 * np.arange(len(recent))[::-1]
         order = np.argsort(cost, kind="stable")[: self.parameters.references]
-        return np.array(recent, np.int64)[np.sort(order)]
+        return np.asarray(recent[np.sort(order)], np.int64)
 
-    def _keep(self, k: int, points: int) -> bool:
-        """Make a scan a keyframe if it is far enough from the last one."""
+    def _keep(self, points: int) -> bool:
+        """Make the last scan a keyframe if it is far enough from the keyframe before."""
         if self.keyframes:
-            motion = between(self.poses[self.keyframes[-1]], self.poses[k])
+            motion = between(self.node(-1), self.poses[-1])
             near = math.hypot(motion[0], motion[1]) < self.parameters.keyframe_distance
-            if points < 10 or (near and abs(motion[2]) < self.parameters.keyframe_turn):
+            if points < _FEWEST_POINTS or (near and abs(motion[2]) < self.parameters.keyframe_turn):
                 return False
-        self.keyframes.append(k)
-        self.drawn.append(k)
-        draw_scan(self.grid, self.store, k, self.poses[k], 1)
-        if len(self.drawn) > _DRAWN:
+        self.keyframes.append(len(self.poses) - 1)
+        self.information.append(self.system[:6].copy())
+        draw_scan(self.grid, self.store, len(self.keyframes) - 1, self.poses[-1], 1)
+        if len(self.keyframes) - self.drawn > _DRAWN:
             self._forget()
         return True
 
     def _forget(self) -> None:
         """Wipe the oldest keyframes out of the grid, and draw again what they shared with others."""
-        half = len(self.drawn) // 2
-        for old in self.drawn[:half]:
-            draw_scan(self.grid, self.store, old, self.poses[old], -1)
-        self.drawn = self.drawn[half:]
-        for kept in self.drawn:
-            draw_scan(self.grid, self.store, kept, self.poses[kept], 1)
+        last = len(self.keyframes)
+        middle = (self.drawn + last) // 2
+        for old in range(self.drawn, middle):
+            draw_scan(self.grid, self.store, old, self.node(old), -1)
+        for kept in range(middle, last):
+            draw_scan(self.grid, self.store, kept, self.node(kept), 1)
+        self.drawn = middle
+
+
+def _believed(motion: Floats, unsure: bool) -> tuple[Floats, Floats]:
+    """How far a motion is believed, and the window to search first: (2,) each [m, rad]."""
+    if unsure:
+        return np.array([0.2, 0.3]), np.array([0.5, 0.6])
+    spread = np.array(motion_spread(motion))
+    if math.hypot(motion[0], motion[1]) < 1e-3 and abs(motion[2]) < 1e-3:
+        return spread, np.array([0.05, 0.02])
+    return spread, np.array([max(0.1, min(2.0 * spread[0], 0.3)), max(0.03, min(2.0 * spread[1], 0.6))])

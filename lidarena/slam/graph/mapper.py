@@ -7,7 +7,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import EstimatorError
-from lidarena.slam.graph.back_end import BackEnd, adjusted
+from lidarena.slam.graph.adjustment import adjusted, torn_places
+from lidarena.slam.graph.back_end import BackEnd
 from lidarena.slam.graph.front_end import FrontEnd, FrontEndParameters
 from lidarena.slam.graph.surface_points import BeamFan
 from lidarena.slam.planar import between, compose, inverse, wrapped
@@ -16,6 +17,8 @@ Floats = NDArray[np.float64]
 
 _CONTRADICTED = 0.3
 """A loop from which the finished map is farther away [m, rad] was not kept."""
+_MANY = 0.2
+"""Share of the loops that may be wrong: places that look alike."""
 
 
 @dataclass(frozen=True)
@@ -113,17 +116,18 @@ class Mapper:
         self.parameters = parameters or MapParameters()
         fan = BeamFan(float(angles[0]), float(steps.mean()), len(angles))
         self.front = FrontEnd(fan, self.parameters.front_end)
+        self.back = BackEnd(self.front)
         self.max_range, self.mount = max_range, np.asarray(mount, np.float64)
         self.pose = np.zeros(3)
-        self.times: list[float] = []
 
-    def add(self, time: float, odometry_pose: Floats, ranges: NDArray[np.float32]) -> Floats:
-        """Take in a scan.
+    def add(self, time: float, odometry_pose: Floats, ranges: NDArray[np.float32], unsure: bool = False) -> Floats:
+        """Take in a scan; where it closes a loop, the robot is where the closed map says.
 
         Args:
             time: Of the scan [s].
             odometry_pose: (3,) where the robot is by its wheels.
             ranges: (B,) [m]; 0, NaN and what is not below ``max_range`` are no returns.
+            unsure: The wheels do not tell how the robot came here from the scan before: they were reset, or lifted.
 
         Returns:
             (3,) where the robot is.
@@ -137,9 +141,9 @@ class Mapper:
         if odometry.shape != (3,) or not np.isfinite(odometry).all():
             raise EstimatorError(f"the odometry is {odometry_pose}; three finite numbers x, y, theta are needed")
         scan = np.where((scan > 0.0) & (scan < self.max_range * (1.0 - 1e-4)), scan, np.float32(0.0)).astype(np.float32)
-        self.times.append(time)
-        self.front.add(compose(odometry, self.mount), scan)
-        self.pose = compose(self.front.poses[-1], inverse(self.mount))
+        if self.front.add(compose(odometry, self.mount), scan, unsure):
+            self.back.extend()
+        self.pose = compose(self.back.corrected(self.front.poses[-1]), inverse(self.mount))
         return self.pose
 
     def finish(self) -> MapResult:
@@ -147,13 +151,12 @@ class Mapper:
         front = self.front
         if not front.keyframes:
             return _unmapped(front, self.mount)
-        back = BackEnd(front)
-        back.close_loops()
-        nodes, edges = adjusted(front, back.scans, back.poses)
-        poses = spread_over(front, back.scans, nodes)
-        loops = _checked_loops(back, nodes)
-        graph = PoseGraph(nodes, back.scans, edges.pairs, edges.motions, edges.information)
-        return MapResult(compose(poses, inverse(self.mount)), loops, graph, _doubts(front, loops))
+        scans = np.array(front.keyframes, np.int64)
+        nodes, edges = adjusted(front, self.back.fitted())
+        poses = spread_over(front, scans, nodes)
+        loops, torn = _checked_loops(self.back, scans, nodes), torn_places(front, nodes)
+        graph = PoseGraph(nodes, scans, edges.pairs, edges.motions, edges.information)
+        return MapResult(compose(poses, inverse(self.mount)), loops, graph, _doubts(front, loops, scans[torn]))
 
 
 def spread_over(front: FrontEnd, scans: NDArray[np.int64], nodes: Floats) -> Floats:
@@ -180,30 +183,31 @@ def _unmapped(front: FrontEnd, mount: Floats) -> MapResult:
     return MapResult(compose(poses, inverse(mount)), [], graph, doubts)
 
 
-def _checked_loops(back: BackEnd, nodes: Floats) -> list[Loop]:
+def _checked_loops(back: BackEnd, scans: NDArray[np.int64], nodes: Floats) -> list[Loop]:
     """The loops with how far the finished map disagrees."""
     loops = []
     for one in back.loops:
         error = between(one.motion, between(nodes[one.earlier], nodes[one.later]))
         residual = float(np.hypot(error[0], error[1]))
         kept = residual < _CONTRADICTED and abs(float(error[2])) < _CONTRADICTED
-        later, earlier = int(back.scans[one.later]), int(back.scans[one.earlier])
+        later, earlier = int(scans[one.later]), int(scans[one.earlier])
         loops.append(Loop(later, earlier, one.motion, residual, kept))
     return loops
 
 
-def _doubts(front: FrontEnd, loops: list[Loop]) -> list[str]:
-    """Sentences on where the map may be wrong."""
+def _doubts(front: FrontEnd, loops: list[Loop], torn: NDArray[np.int64]) -> list[str]:
+    """Sentences on where the map may be wrong: what was not matched, and the scans (T, 2) between which it is torn."""
     doubts = []
     held = int(np.sum(front.held))
     if held:
         first = int(np.argmax(front.held))
         doubts.append(f"{held} of {front.count} scans fitted nothing and follow the wheels alone, first scan {first}")
-    left = [loop for loop in loops if not loop.kept]
-    if left:
-        worst = max(left, key=lambda loop: loop.residual)
+    if len(torn):
+        worst = "; ".join(f"scans {a} and {b}" for a, b in torn[:3])
         doubts.append(
-            f"{len(left)} of {len(loops)} loops contradict the map, the worst by {worst.residual:.2f} m between scans "
-            f"{worst.to_scan} and {worst.from_scan}; the map may be torn there"
+            f"the map is likely torn or folded at {len(torn)} places: what was seen there does not fit ({worst})"
         )
+    left = [loop for loop in loops if not loop.kept]
+    if left and len(left) > _MANY * len(loops):
+        doubts.append(f"{len(left)} of {len(loops)} loops contradict the map; it may be torn")
     return doubts

@@ -9,8 +9,10 @@ from numpy.typing import NDArray
 
 from lidarena.slam.graph.mapper import Loop, MapParameters, Mapper, PoseGraph
 from lidarena.slam.logs.carmen import RecordedLog
+from lidarena.slam.logs.mount_check import checked_mount
 from lidarena.slam.logs.replay import trace_map
 from lidarena.slam.logs.trajectory import Trajectory, in_order, spread_correction
+from lidarena.slam.planar import compose, inverse
 from lidarena.world.map_server import OccupancyMap
 
 Progress = Callable[[int, int], None]
@@ -57,21 +59,32 @@ def map_log(log: RecordedLog, parameters: MapParameters | None = None, progress:
         MapError: The robot went farther than any map may reach.
     """
     began = time.process_time()
+    unsure = _unsure_scans(log)
     mapper, total = Mapper(log.angles, log.max_range, log.mount, parameters), len(log.scan_readings)
     for k, reading in enumerate(log.scan_readings):
-        mapper.add(float(log.times[reading]), log.odometry[reading], log.ranges[k])
+        mapper.add(float(log.times[reading]), log.odometry[reading], log.ranges[k], bool(unsure[k]))
         if progress is not None and (k % 50 == 49 or k == total - 1):
             progress(k + 1, total)
     result = mapper.finish()
+    graph, laser = result.graph, compose(result.poses, log.mount)
+    mount, doubt = checked_mount(log.mount, log.odometry[log.scan_readings], laser)
+    robot = result.poses if doubt is None else compose(laser, inverse(mount))
     seconds = time.process_time() - began
-    graph = result.graph
     return LogMap(
-        trajectory=in_order(log.times, spread_correction(log.odometry, log.scan_readings, result.poses)),
+        trajectory=in_order(log.times, spread_correction(log.odometry, log.scan_readings, robot)),
         readings=log.scan_readings[graph.scans],
         poses=graph.nodes,
         map=trace_map(log, graph.scans, graph.nodes),
         loops=result.loops,
         graph=graph,
-        doubts=result.doubts,
+        doubts=result.doubts + ([] if doubt is None else [doubt]),
         seconds=seconds,
     )
+
+
+def _unsure_scans(log: RecordedLog) -> NDArray[np.bool_]:
+    """(S,) whether the wheels do not tell the motion from the scan before to a scan."""
+    if not len(log.unsure):
+        return np.zeros(len(log.scan_readings), np.bool_)
+    so_far = np.cumsum(log.unsure)[log.scan_readings]
+    return np.diff(so_far, prepend=so_far[:1]) > 0

@@ -40,3 +40,19 @@ def test_the_heading_does_not_drift_along_a_corridor() -> None:
         noise = np.random.default_rng(k).normal(0.0, 0.01, FAN.beams)
         front.add(np.array([0.2 * k, 0.0, -0.01 * k]), (ranges + noise).astype(np.float32))
     assert abs(front.poses[-1][2]) < 0.01
+
+
+def test_without_wheels_the_way_goes_on_as_before() -> None:
+    front = FrontEnd(FAN)
+    for k in range(12):
+        pose = (-1.5 + 0.2 * k, 0.3, 0.05 * k)
+        front.add(np.zeros(3), room_ranges(pose), unsure=k > 0)
+    first, last = np.array([-1.5, 0.3, 0.0]), np.array([0.7, 0.3, 0.55])
+    np.testing.assert_allclose(between(front.poses[0], front.poses[-1]), between(first, last), atol=0.03)
+
+
+def test_only_keyframes_are_stored() -> None:
+    front = FrontEnd(FAN)
+    for _ in range(300):
+        front.add(np.zeros(3), room_ranges((0.0, 0.0, 0.0)))
+    assert front.keyframes == [0] and len(front.store.points) == 256 and front.count == 300
