@@ -55,6 +55,10 @@ class TemporalError(LidarenaError):
     """A temporal network that cannot be: an unknown point, crossed bounds, a torn file, or no way to execute it."""
 
 
+class VisionError(LidarenaError):
+    """Images, a calibration or a sequence that no odometry can use, or a camera where it cannot be."""
+
+
 class WriteError(LidarenaError, OSError):
     """A file or folder that cannot be written: its place is not writable, full, or something else; an OSError too."""
 

@@ -1,0 +1,1 @@
+"""Recorded stereo sequences, and how far an odometry is off on them."""
