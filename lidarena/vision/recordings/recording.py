@@ -121,4 +121,4 @@ def numbers_of(path: Path, columns: int | None = None) -> Floats:
         wanted = len(rows[0]) if columns is None else columns
         if len(rows[-1]) != wanted or not np.isfinite(rows[-1]).all():
             raise VisionError(f"line {number} of {path} has {len(rows[-1])} numbers; {wanted} finite ones are needed")
-    return np.array(rows, np.float64)
+    return np.array(rows, np.float64).reshape(len(rows), -1 if rows else columns or 0)
