@@ -19,6 +19,8 @@ Region = tuple[int, int, int, int]
 KINDS = ("sift", "orb", "tracks")
 _WINDOW = 21
 """Side of the squares that Lucas-Kanade compares [pixels]."""
+_SHRINK = 4
+"""By which images are reduced before disparities are guessed."""
 _SURROUNDINGS, _CONTRAST, _LEAST_VARIANCE = 101, 40.0, 4.0
 """Brightness is made even over squares of this side [pixels]: to this deviation, if it has so much variance at all."""
 
@@ -199,7 +201,7 @@ def _corners(images: Pair, camera: StereoCamera, options: FeatureOptions, region
     if corners is None:
         return Features(np.empty((0, 4)), np.empty((0, 0), np.float32), np.empty(0), images, (0, 0))
     left = np.asarray(corners, np.float32).reshape(-1, 2)
-    right, fits = track(images[0], images[1], left, left)
+    right, fits = track(images[0], images[1], left, guessed_right(images, left), levels=2)
     pixels = np.hstack([left, right]).astype(np.float64)
     reach = camera.focal * camera.baseline
     disparity = pixels[:, 0] - pixels[:, 2]
@@ -207,6 +209,27 @@ def _corners(images: Pair, camera: StereoCamera, options: FeatureOptions, region
     fits &= np.abs(pixels[:, 1] - pixels[:, 3]) <= options.row_error
     found = Features(pixels, np.empty((len(pixels), 0), np.float32), np.ones(len(pixels)), images, (len(left),) * 2)
     return found.taken(fits)
+
+
+def guessed_right(images: Pair, left: NDArray[np.float32]) -> NDArray[np.float32]:
+    """About where the right image shows what is at places (N, 2) of the left one.
+
+    Lucas-Kanade finds only what is near to its guess; on ground close by, disparities are a third of the image. They
+    are looked for at a quarter of the resolution, by semi-global matching.
+    """
+    small = [
+        cv2.resize(image, None, fx=1.0 / _SHRINK, fy=1.0 / _SHRINK, interpolation=cv2.INTER_AREA) for image in images
+    ]
+    most = 16 * max(1, round(0.5 * small[0].shape[1] / 16))
+    padded = [cv2.copyMakeBorder(image, 0, 0, most, 0, cv2.BORDER_REPLICATE) for image in small]
+    matcher = cv2.StereoSGBM.create(0, most, 5, 200, 800, uniquenessRatio=5, speckleWindowSize=40, speckleRange=2)
+    disparity = np.asarray(matcher.compute(padded[0], padded[1]), np.float32)[:, most:] / 16.0
+    known = disparity > 0.0
+    disparity[~known] = np.median(disparity[known]) if known.any() else 0.0
+    column, row = (np.clip((left[:, k] / _SHRINK).astype(int), 0, disparity.shape[1 - k] - 1) for k in (0, 1))
+    guess = left.copy()
+    guess[:, 0] -= _SHRINK * disparity[row, column]
+    return guess
 
 
 def even(image: Image) -> Image:

@@ -16,8 +16,10 @@ from lidarena.envs import (
     BatchedArena,
     BatchedCorridor,
     BatchedExploration,
+    BatchedSeabed,
     CorridorCentralEnv,
     ExplorationEnv,
+    SeabedEnv,
     corridor_v0,
 )
 from lidarena.envs.corridor.shared_env import SharedCorridor
@@ -27,14 +29,17 @@ SINGLE = {
     "lidarena/Env1-v0": (ExplorationEnv, {"map": "env1", "slam": "truth"}),
     "lidarena/Arena-v0": (ArenaEnv, {"arena": "yang"}),
     "lidarena/CorridorCentral-v0": (CorridorCentralEnv, {"robots": 2}),
+    "lidarena/Seabed-v0": (SeabedEnv, {"duration": 3.0, "seabeds": 1, "count": 100, "skips": [12, 25]}),
 }
 BATCHED = {
     "lidarena/Env1-v0": BatchedExploration,
     "lidarena/Arena-v0": BatchedArena,
     "lidarena/CorridorCentral-v0": BatchedCorridor,
     "lidarena/CorridorShared-v0": SharedCorridor,
+    "lidarena/Seabed-v0": BatchedSeabed,
 }
 USUAL = {"lidarena/Env1-v0": 1000, "lidarena/Arena-v0": 500, "lidarena/CorridorCentral-v0": 1000}
+USUAL["lidarena/Seabed-v0"] = 5000
 every_id = pytest.mark.parametrize("id_", SINGLE)
 
 

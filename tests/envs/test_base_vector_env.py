@@ -12,6 +12,14 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 from lidarena.base.errors import ConfigError
 from lidarena.envs.infos import row_of
 
+SEABED = {
+    "duration": 3.0,
+    "seabeds": 1,
+    "count": 100,
+    "least_matches": 20,
+    "skips": [6, 12, 25],
+    "max_episode_steps": 5,
+}
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "exploration": ("lidarena/Env1-v0", {"slam": "truth", "start": "random", "max_episode_steps": 9}),
     "map": ("lidarena/Env1-v0", {"slam": "truth", "observation": "map", "max_episode_steps": 4}),
@@ -24,6 +32,7 @@ CASES: dict[str, tuple[str, dict[str, Any]]] = {
         "lidarena/CorridorCentral-v0",
         {"robots": 2, "robot": {"radius": 0.3}, "places": "random", "max_episode_steps": 6},
     ),
+    "seabed": ("lidarena/Seabed-v0", SEABED),
 }
 every_family = pytest.mark.parametrize("case", CASES)
 every_mode = pytest.mark.parametrize("mode", list(AutoresetMode))

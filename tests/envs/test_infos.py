@@ -16,6 +16,7 @@ SINGLE = {
     "exploration": ("lidarena/Env1-v0", {"slam": "truth"}),
     "arena": ("lidarena/Arena-v0", {"arena": "yang"}),
     "corridor": ("lidarena/CorridorCentral-v0", {"robots": 3}),
+    "seabed": ("lidarena/Seabed-v0", {"duration": 3.0, "seabeds": 1, "count": 100, "skips": [12, 25]}),
 }
 
 

@@ -5,7 +5,9 @@ import pytest
 
 from lidarena.base.errors import ConfigError, VisionError
 from lidarena.vision.features import KINDS, FeatureOptions, detect, even, match_descriptors, track
-from tests.vision.scenes import CAMERA, pair_at, seabed
+from lidarena.vision.seabed_renderer import downward_pose, render_pair
+from lidarena.vision.water import Water
+from tests.vision.scenes import CAMERA, pair_at, seabed, stream
 
 FEW = {kind: FeatureOptions(kind=kind, count=150) for kind in KINDS}
 every_kind = pytest.mark.parametrize("kind", KINDS)
@@ -74,6 +76,15 @@ def test_bits_are_matched_by_how_many_differ() -> None:
     two = one.copy()
     two[:, 0] ^= 3
     assert np.array_equal(match_descriptors(one, two, 0.8)[1], np.arange(9))
+
+
+def test_corners_are_found_in_both_images_on_near_ground_too() -> None:
+    """1.5 m above the ground the images are apart by a quarter of their width."""
+    low = downward_pose(8.0, 5.4, seabed().height(8.0, 5.4) + 1.5, 0.1)
+    pair = render_pair(seabed(), CAMERA, low, Water(), stream(3))
+    found = detect(pair, CAMERA, FeatureOptions(kind="tracks", count=150))
+    disparity = found.pixels[:, 0] - found.pixels[:, 2]
+    assert len(disparity) > 60 and 90.0 < np.median(disparity) < 190.0
 
 
 def test_tracking_follows_a_shift_of_less_than_a_pixel() -> None:

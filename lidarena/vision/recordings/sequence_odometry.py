@@ -12,7 +12,7 @@ from lidarena.base.errors import VisionError
 from lidarena.base.random_streams import seed_stream
 from lidarena.vision.bundle import Observations, adjust
 from lidarena.vision.camera import StereoCamera
-from lidarena.vision.features import FeatureOptions, Image, Pair, even, track
+from lidarena.vision.features import FeatureOptions, Image, Pair, even, guessed_right, track
 from lidarena.vision.matching import Matches
 from lidarena.vision.motion import MotionOptions, estimate_motion
 from lidarena.vision.recordings.recording import StereoRecording
@@ -214,7 +214,7 @@ class SequenceTracker:
         found = self._new_corners(pair[0], wanted)
         if not len(found):
             return
-        right, fits = track(pair[0], pair[1], found, found)
+        right, fits = track(pair[0], pair[1], found, guessed_right(pair, found), levels=2)
         pixels = np.hstack([found, right]).astype(np.float64)
         pixels = pixels[fits & self._plausible(pixels)]
         added = np.full((len(self._history), len(pixels), 4), np.nan)

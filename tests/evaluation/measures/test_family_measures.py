@@ -107,9 +107,9 @@ def test_a_value_without_a_column_is_refused(monkeypatch: pytest.MonkeyPatch) ->
         episode("stranger/Diving-v0")
 
 
-@pytest.mark.parametrize("family", ["exploration", "arena", "corridor"])
+@pytest.mark.parametrize("family", ["exploration", "arena", "corridor", "seabed"])
 def test_every_family_of_the_package_has_a_table(family: str) -> None:
-    ids = {"exploration": "Env1-v0", "arena": "Arena-v0", "corridor": "CorridorCentral-v0"}
+    ids = {"exploration": "Env1-v0", "arena": "Arena-v0", "corridor": "CorridorCentral-v0", "seabed": "Seabed-v0"}
     table = measures_of(make_env(f"lidarena/{ids[family]}", {})).table
     names = [column.name for column in table]
     assert set(OF_ALL) < set(names) and len(set(names)) == len(names)
