@@ -8,7 +8,7 @@ from typing import Any
 
 from rich.console import Console
 
-from lidarena.base.yaml_config import check_config
+from lidarena.base.yaml_config import as_config
 from lidarena.evaluation.comparison_config import ComparisonConfig, PolicyEntry
 from lidarena.evaluation.participants import check
 from lidarena.evaluation.pictures import Cell, draw_pictures
@@ -60,13 +60,13 @@ class Comparison:
         return told
 
 
-def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | None = None) -> Comparison:
+def compare(config: ComparisonConfig | Mapping[str, Any] | str | Path, console: Console | None = None) -> Comparison:
     """Run every policy in every environment on the same seeds, and write what came of it.
 
     The folder appears when everything is in it; earlier results of the same name are kept under another one.
 
     Args:
-        config: What to compare: from `load_config`, or a dictionary of what a YAML file would hold.
+        config: What to compare: a YAML file, a dictionary of what one would hold, or what `load_config` made of one.
         console: Where progress is reported; nowhere if None.
 
     Returns:
@@ -77,8 +77,7 @@ def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | Non
         EpisodeError: An environment or a policy raised.
         WriteError: The place of the results is not writable or full.
     """
-    if isinstance(config, Mapping):
-        config = check_config(config, ComparisonConfig)
+    config = as_config(config, ComparisonConfig)
     console = console or Console(quiet=True)
     check_folder(config.folder)
     check(config)

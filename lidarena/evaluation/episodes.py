@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from lidarena.base.errors import ConfigError
 from lidarena.base.old_names import takes_old_keywords
 from lidarena.baselines import Policy
 from lidarena.envs.infos import Info
@@ -80,8 +81,10 @@ def run_episode(
         The measured episode.
 
     Raises:
-        ConfigError: The environment's family is not registered, or tells measures that cannot be had.
+        ConfigError: The environment is a batch, or its family is not registered, or tells measures that cannot be had.
     """
+    if hasattr(env, "num_envs"):
+        raise ConfigError(f"run_episode() runs in a single environment, not in {env.num_envs} at once")
     family = measures_of(env)
     recording = Recording(env, policy, family.kept)
     recording.step_limit = _step_limit(env, max_steps)
