@@ -50,7 +50,7 @@ def test_no_other_seeds_are_taken(seeds: Any) -> None:
         seeds_of(seeds, 3)
 
 
-@pytest.mark.parametrize("seeds", ["123", {1, 2, 3}, 1.5, np.zeros((3, 1), int)])
+@pytest.mark.parametrize("seeds", ["123", {1, 2, 3}, 1.5, np.zeros((1, 3), int)])
 def test_what_are_no_seeds_is_refused_and_says_that_there_may_be_several(seeds: Any) -> None:
     with pytest.raises(ConfigError, match=r"^seed = .* or one of them for each of the 3 worlds$"):
         seeds_of(seeds, 3)
