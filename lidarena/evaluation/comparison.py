@@ -15,6 +15,8 @@ from lidarena.evaluation.pictures import Cell, draw_pictures
 from lidarena.evaluation.plane import FRONT_FILE, planes_of, pooled, write_front
 from lidarena.evaluation.plane_picture import draw_planes
 from lidarena.evaluation.progress_report import report_progress
+from lidarena.evaluation.report.folder_report import write_comparison_report
+from lidarena.evaluation.report.sources import replay_place
 from lidarena.evaluation.results import (
     RESULTS_FILE,
     Row,
@@ -89,7 +91,7 @@ def compare(config: ComparisonConfig | Mapping[str, Any] | str | Path, console: 
     drawn: list[Path] = []
 
     def fill(folder: Path) -> None:
-        found.extend(_run(config, folder / "videos", console))
+        found.extend(_run(config, folder, console))
         rows.extend(summarise(cell.env.label, cell.policy.title, cell.episodes) for line in found for cell in line)
         write_tables(folder, config, rows)
         planes = planes_of(rows, config.participants)
@@ -99,6 +101,9 @@ def compare(config: ComparisonConfig | Mapping[str, Any] | str | Path, console: 
         if config.pictures:
             files = draw_planes(planes, whole, folder / "pictures") + draw_pictures(found, folder / "pictures")
             drawn.extend(path.relative_to(folder) for path in files)
+        if config.report:
+            _write_replays(folder, found)
+            write_comparison_report(folder, config.folder.name)
 
     earlier = write_results_folder(config.folder, fill)
     videos = sorted((config.folder / "videos").rglob("*.*"))
@@ -116,13 +121,19 @@ def write_tables(folder: Path, config: ComparisonConfig, rows: Sequence[Row]) ->
         (folder / name).write_text(text, encoding="utf-8")
 
 
+def _write_replays(folder: Path, cells: Sequence[Sequence[Cell]]) -> None:
+    for cell in (cell for line in cells for cell in line):
+        if cell.episodes[0].replay is not None:
+            cell.episodes[0].replay.write(folder / replay_place(cell.env.label, cell.policy.title))
+
+
 def _reference(policies: Sequence[PolicyEntry]) -> str:
     """The policy over which the values of all environments are pooled: `frontier`, or else the first."""
     return next((policy.title for policy in policies if policy.name == "frontier"), policies[0].title)
 
 
-def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[Cell]]:
-    tasks = list_tasks(config, videos)
+def _run(config: ComparisonConfig, folder: Path, console: Console) -> list[list[Cell]]:
+    tasks = list_tasks(config, folder)
     with report_progress(len(tasks), console) as advance:
         episodes = iter(run_tasks(tasks, config.workers, lambda task: advance(str(task))))
     counts = Counter((task.env.label, task.policy.title) for task in tasks)
