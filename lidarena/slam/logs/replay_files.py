@@ -50,6 +50,8 @@ def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, A
         "relations": len(errors.translation) if errors else 0,
         "scan_updates": len(result.readings),
         "updates_per_second": round(result.updates_per_second, 1),
+        "evidence_of_attempts": [round(each, 1) for each in result.evidence],
+        "spread_of_attempts_m": {"nearest": result.spread.nearest, "farthest": result.spread.farthest},
     }
 
 

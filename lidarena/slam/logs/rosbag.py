@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 from lidarena.base.errors import LidarenaError, suggest
 from lidarena.slam.logs.assembly import Assembly, RawScan
 from lidarena.slam.logs.beams import BeamLayout
+from lidarena.slam.logs.cut_bags import read_cut_bag
 from lidarena.slam.logs.recorded_log import LogError, LogOptions, RecordedLog
 from lidarena.slam.logs.tf_tree import TransformTree
 from lidarena.slam.logs.trajectory import interpolated
@@ -209,10 +210,25 @@ def _raw_messages(path: Path, where: str, messages: _Messages) -> Iterator[tuple
         if messages.scans and messages.options.keep_cut:
             messages.assembly.notes.append(f"{where} is damaged or cut off; what stands before that place is kept")
             return
+        if messages.options.keep_cut:
+            left = list(_left_of_cut(path, where, messages))
+            if left:
+                yield from left
+                return
         raise LogError(
             f"{where} is damaged, cut off or no rosbag ({reason[:120].rstrip('.')}); a whole .bag, .db3 or .mcap file "
             "or the folder of a rosbag 2 is needed ('rosbag reindex' mends a cut one)"
         ) from error
+
+
+def _left_of_cut(path: Path, where: str, messages: _Messages) -> Iterator[tuple[Any, int, bytes]]:
+    """The raw messages that a damaged bag still holds, of the topics that were chosen."""
+    cut = read_cut_bag(path, (SCAN, ODOMETRY, *TRANSFORMS))
+    if cut is None or not any(each.msgtype == SCAN and each.msgcount for each in cut.connections):
+        return
+    messages.assembly.notes.append(f"{where} is damaged or cut off; what can be read from its beginning on is kept")
+    messages.decode = cut.decode
+    yield from cut.chosen(each.topic for each in messages.choose(cut.connections))
 
 
 def _seconds(header: Any, stamp: int) -> float:
