@@ -22,8 +22,9 @@ FREE_THRESH, OCCUPIED_THRESH = 0.196, 0.65
 FREE_GREY, UNKNOWN_GREY, OCCUPIED_GREY = 254, 205, 0
 """The grey values that the map savers write."""
 
-_STANDS_OUT, _NEIGHBOURS = 3, 3
-"""A grey is a code if it is so many times as frequent as the greys that differ by up to so much, together."""
+_STANDS_OUT, _NEIGHBOURS, _FEWEST = 3, 3, 50
+"""A grey is a code if it is so many times as frequent as the greys that differ by up to so much, together, and if so
+many pixels have it."""
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _REQUIRED = ("image", "resolution", "origin")
@@ -95,7 +96,9 @@ def load_map(path: str | os.PathLike[str]) -> OccupancyMap:
 def _is_code(grey: NDArray[np.float64]) -> bool:
     """Whether the savers' grey for unknown cells was meant as such: shades do not stand out among their neighbours."""
     unknown = int(np.sum(grey == UNKNOWN_GREY))
-    return unknown > _STANDS_OUT * int(np.sum((np.abs(grey - UNKNOWN_GREY) <= _NEIGHBOURS) & (grey != UNKNOWN_GREY)))
+    return unknown >= _FEWEST and unknown > _STANDS_OUT * int(
+        np.sum((np.abs(grey - UNKNOWN_GREY) <= _NEIGHBOURS) & (grey != UNKNOWN_GREY))
+    )
 
 
 def read_description(path: str | os.PathLike[str]) -> MapDescription:

@@ -121,6 +121,9 @@ def _sqlite_records(file: Path) -> Iterator[Record]:
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(shutil.copy(file, Path(folder) / "bag.db3"))
         with copy.open("r+b") as stream:
+            size = int.from_bytes(stream.read(18)[16:], "big")
+            size = 65536 if size == 1 else max(size, 512)
+            stream.truncate(copy.stat().st_size // size * size)  # a page that was cut would read as zeros
             stream.seek(92)
             stream.write(b"\0\0\0\0")  # makes the number of pages in the header invalid, so that the file's size counts
         database = sqlite3.connect(copy)

@@ -48,8 +48,8 @@ def checked_odometry(times: NDArray[np.float64], poses: NDArray[np.float64]) -> 
     wild = int(np.sum(_implausible(times, poses)))
     if wild > _MOST_WILD * len(poses):
         note = (
-            f"{wild:,} of {len(poses) - 1:,} motions of the odometry are such as no robot can drive (is it in metres and "
-            "radians?); it is left out, and the way is found by scan matching alone"
+            f"{wild:,} of {len(poses) - 1:,} motions of the odometry are such as no robot can drive (is it in metres "
+            "and radians?); it is left out, and the way is found by scan matching alone"
         )
         return CheckedOdometry(np.tile(poses[:1], (len(poses), 1)), np.arange(len(poses)) > 0, (note,))
     mended, outliers = _without_outliers(times, poses)

@@ -1,7 +1,7 @@
 """The occupancy grid of a log's scans, traced part by part, and how well the scans agree on it.
 
 A building is traced in square parts, each with the scans that reach into it: counting takes memory for one part at a
-time, however far apart the ends of the building lie, and the result is the same to the bit as in one piece.
+time, however far apart the ends of the building lie, and the result is the same as in one piece but for rounding.
 """
 
 import math

@@ -1,6 +1,7 @@
 """What no robot can have driven is found and taken out; what it can have driven is left to the bit."""
 
 import numpy as np
+import pytest
 
 from lidarena.slam.logs.odometry_checks import checked_odometry
 from lidarena.slam.planar import between, compose
