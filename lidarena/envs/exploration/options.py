@@ -97,7 +97,8 @@ class ExplorationOptions:
             weights in place of the completeness, or ``"map"`` (a dictionary with an egocentric picture of the map); or
             one's own, see ``lidarena.envs.observers``.
         action: ``"discrete"`` (DA-SLAM's three) or ``"continuous"``.
-        slam: ``"rbpf"`` runs the particle filter, ``"odometry"`` maps with the pose that the odometry adds up to,
+        slam: ``"rbpf"`` runs the particle filter, ``"graph"`` fits a graph of poses (see
+            ``lidarena.slam.graph.estimator``), ``"odometry"`` maps with the pose that the odometry adds up to,
             ``"truth"`` with the true one. Or an estimator of one's own: ``"module:callable"``, a class or function (see
             ``lidarena.slam.estimator``). With options: a dictionary of them and of ``name``.
         particles: Of the particle filter.
