@@ -1,94 +1,12 @@
-"""Train an agent from a YAML file, or go on with a training.
+"""Train an agent from a YAML file, or go on with a training; the same as ``lidarena train``.
 
 python train.py --config configs/train/env1_completeness.yaml --set ppo.n_steps=256 --out runs/mine
 python train.py --resume runs/mine --set total_steps=8e6
 """
 
-import argparse
-import json
 import sys
 
-from lidarena import agents
-from lidarena.agents.learner_config import PPOConfig
-from lidarena.agents.run_folder import config_of
-from lidarena.agents.training_config import TrainingConfig
-from lidarena.base.errors import LidarenaError
-from lidarena.base.terminal import make_output_printable
-
-
-def main(arguments: list[str] | None = None) -> int:
-    """Run a training; return 0, 2 for a refusal, 130 after Ctrl-C."""
-    make_output_printable()
-    parser = _parser()
-    options = parser.parse_args(arguments)
-    if not options.config and not options.resume:
-        parser.error("give --config FILE to start a training, or --resume DIR to go on with one")
-    if options.out and options.resume:
-        parser.error("--out is for a new training; --resume goes on in its own folder")
-    try:
-        config = _config(options)
-        print(_summary(config), flush=True)
-        folder = agents.train(config, resume=options.resume, exact_out=bool(options.out))
-    except LidarenaError as refusal:
-        print(refusal, file=sys.stderr)
-        return 2
-    except OSError as error:  # of TensorBoard's writer; a full disk raises without a name
-        place = repr(error.filename or options.resume or config.out)
-        print(f"the training has stopped: {place} cannot be written: {error.strerror}", file=sys.stderr)
-        return 2
-    except agents.TrainingStopped as stopped:
-        print(stopped, file=sys.stderr)
-        return 130
-    except KeyboardInterrupt:
-        print("interrupted before the training began; nothing was written", file=sys.stderr)
-        return 130
-    print(f"policy:   {folder}/policy.safetensors (also policy.json; in Python lidarena.agents.load({str(folder)!r}))")
-    print(f"curve:    {folder}/progress.csv, or tensorboard --logdir {folder}")
-    print(f"go on:    python train.py --resume {folder} --set total_steps=N")
-    return 0
-
-
-def _config(options: argparse.Namespace) -> TrainingConfig:
-    overrides = [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
-    if options.config:
-        return agents.load_config(options.config, TrainingConfig, overrides)
-    return config_of(options.resume, overrides)
-
-
-def _summary(config: TrainingConfig) -> str:
-    """What is going to happen, in three lines."""
-    keywords = "".join(f", {key}={value!r}" for key, value in config.env.keywords.items())
-    return (
-        f"env:      {config.env.id}{keywords}\n"
-        f"schedule: {config.total_steps:,} steps of {config.num_envs} worlds, seed {config.seed}, "
-        f"a checkpoint every {config.checkpoint_every:,}\n"
-        f"learner:  {config.algorithm}, {_learner(config)}, learning rate {config.learner.learning_rate}"
-    )
-
-
-def _learner(config: TrainingConfig) -> str:
-    learner, worlds = config.learner, config.num_envs
-    if isinstance(learner, PPOConfig):
-        batches = f"batches of {learner.batch_size}, {learner.n_epochs} epochs"
-        return f"{learner.n_steps} steps × {worlds} worlds an update, {batches}"
-    return (
-        f"{learner.train_freq} steps × {worlds} worlds and {learner.gradient_steps} batches of {learner.batch_size} "
-        f"an update, a memory of {learner.buffer_size:,}"
-    )
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(description="Train an agent from a YAML file, or go on with a training.")
-    parser.add_argument("--config", metavar="FILE", help="training file, such as configs/train/quick.yaml")
-    set_help = "override keys of the file, such as ppo.n_steps=256"
-    parser.add_argument("--set", nargs="+", action="extend", default=[], metavar="KEY=VALUE", help=set_help)
-    out_help = "run folder, over the file's own 'out'; refused if it already holds files"
-    parser.add_argument("--out", metavar="DIR", help=out_help)
-    parser.add_argument(
-        "--resume", metavar="DIR", help="run folder of a training to go on with, from its last checkpoint"
-    )
-    return parser
-
+from lidarena.cli.train_command import main
 
 if __name__ == "__main__":
     sys.exit(main())

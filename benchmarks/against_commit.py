@@ -31,7 +31,7 @@ class Row(NamedTuple):
 PROGRAMS = {
     "environment": (
         Row("exploration, 64 worlds, SLAM live", 40, 40),
-        Row("exploration, 64 worlds, true poses", 100, 100),
+        Row("exploration, 64 worlds, true poses", 200, 300),
     ),
     "corridor": (Row("corridor, 64 teams of 4", 200, 60),),
     "arena": (Row("arena, 64 worlds", 300, 300),),

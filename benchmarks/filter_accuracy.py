@@ -1,6 +1,6 @@
 """How well the filter tracks: position error beside the odometry's, and whether its covariance is honest (NEES).
 
-python benchmarks/filter_accuracy.py [--env lidarena/Env3-v0] [--episodes 20] [--policy frontier]
+python benchmarks/filter_accuracy.py [--env lidarena/Env3-v0] [--episodes 20] [--policy frontier] [--slam rbpf]
 
 NEES is eᵀ Σ⁻¹ e of the pose's error e; its mean is 3 for a filter whose covariance is right. Steps of one episode err
 together, so the χ² bounds are for one step of each: the mean of n independent NEES, times n, is χ² with 3 n degrees of
@@ -22,10 +22,10 @@ from lidarena.envs import set_num_threads
 from lidarena.evaluation.statistics import bootstrap
 
 
-def episode(env_id: str, policy_name: str, seed: int) -> tuple[float, float, float, float, float]:
+def episode(env_id: str, policy_name: str, slam: str, seed: int) -> tuple[float, float, float, float, float]:
     """Mean position error [m], the odometry's [m], mean and median NEES of one episode, and NEES at a random step."""
     set_num_threads(1)
-    env = gym.make(env_id, expose_truth=True, max_episode_steps=5000)
+    env = gym.make(env_id, slam=slam, expose_truth=True, max_episode_steps=5000)
     policy = lidarena.baselines.make(policy_name, env)
     observation, info = env.reset(seed=seed)
     policy.reset(seed=seed)
@@ -50,11 +50,12 @@ def main() -> None:
     parser.add_argument("--env", default="lidarena/Env3-v0")
     parser.add_argument("--episodes", type=int, default=20)
     parser.add_argument("--policy", default="frontier")
+    parser.add_argument("--slam", default="rbpf")
     options = parser.parse_args()
-    work = partial(episode, options.env, options.policy)
+    work = partial(episode, options.env, options.policy, options.slam)
     with ProcessPoolExecutor(mp_context=get_context("spawn")) as pool:
         table = np.array(list(pool.map(work, range(5000, 5000 + options.episodes))))
-    print(f"{options.env}, {options.policy}, {options.episodes} episodes, seeds 5000 …")
+    print(f"{options.env}, {options.policy}, {options.slam}, {options.episodes} episodes, seeds 5000 …")
     names = ("position error [m]", "odometry's error [m]", "NEES, mean", "NEES, median", "NEES, one step each")
     for name, column in zip(names, table.T, strict=True):
         value, low, high = bootstrap(column)

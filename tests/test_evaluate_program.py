@@ -36,6 +36,7 @@ def test_a_comparison_from_start_to_end(file: str, tmp_path: Path, capsys: pytes
     assert "Corridor · 3 episodes each" in printed.out and "Explored" in printed.out
     assert f"pictures: {out}/pictures/plane.png and 4 more there" in printed.out
     assert f"videos:   {out}/videos/Corridor/crasher.gif and 1 more there" in printed.out
+    assert f"report:   {out}/report.html" in printed.out
     assert "6/6 episodes" in printed.err
     assert {path.name for path in out.iterdir()} == {
         RESULTS_FILE,
@@ -44,6 +45,8 @@ def test_a_comparison_from_start_to_end(file: str, tmp_path: Path, capsys: pytes
         "table.md",
         "table.tex",
         "pictures",
+        "replays",
+        "report.html",
         "videos",
     }
     document = json.loads((out / RESULTS_FILE).read_text())
@@ -104,7 +107,7 @@ def test_ctrl_c_ends_quietly(file: str, monkeypatch: pytest.MonkeyPatch, capsys:
     def interrupted(*_: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(evaluate, "compare", interrupted)
+    monkeypatch.setattr("lidarena.evaluation.comparison.compare", interrupted)
     assert evaluate.main(["--config", file]) == 130
     assert capsys.readouterr().err == "interrupted; no results were written\n"
 

@@ -6,6 +6,7 @@ import pytest
 import yaml
 
 import train as program
+from lidarena import agents
 from lidarena.agents import load
 from tests.agents.training_cases import SMALL, press_ctrl_c
 
@@ -74,7 +75,7 @@ def test_ctrl_c(
 ) -> None:
     press_ctrl_c(monkeypatch, at_step=30)
     assert program.main(["--config", str(file)]) == 130
-    assert f"python train.py --resume {tmp_path}/run" in capsys.readouterr().err
+    assert f"lidarena train --resume {tmp_path}/run" in capsys.readouterr().err
 
 
 def test_ctrl_c_before_the_training_begins(
@@ -83,7 +84,7 @@ def test_ctrl_c_before_the_training_begins(
     def interrupt(*_: object, **__: object) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(program.agents, "train", interrupt, raising=False)
+    monkeypatch.setattr(agents, "train", interrupt, raising=False)
     assert program.main(["--config", str(file)]) == 130
     assert "nothing was written" in capsys.readouterr().err
 

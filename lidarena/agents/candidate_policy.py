@@ -64,6 +64,9 @@ class CandidateScores(nn.Module):
         activation: Between the layers.
     """
 
+    trimmed = True
+    """Whether rows behind the last one that is there are not even looked at."""
+
     def __init__(self, candidates: int, widths: list[int], activation: type[nn.Module]) -> None:
         super().__init__()
         self._shape = (candidates, FEATURES + candidates)
@@ -93,9 +96,10 @@ class CandidateScores(nn.Module):
         rows = flat.reshape(-1, *self._shape)
         features, ways = rows[:, :, :FEATURES], rows[:, :, FEATURES:]
         there = features[:, :, 0] > 0.5
-        shown = torch.nonzero(there.any(dim=0))  # rows that are there stand first: the rest need not be looked at
-        last = int(shown.max()) + 1 if len(shown) else 1
-        features, ways, there = features[:, :last], ways[:, :last, :last], there[:, :last]
+        if self.trimmed:  # rows that are there stand first
+            shown = torch.nonzero(there.any(dim=0))
+            last = int(shown.max()) + 1 if len(shown) else 1
+            features, ways, there = features[:, :last], ways[:, :last, :last], there[:, :last]
         codes = self.encoder(features)
         for block in self.blocks:
             codes = block(codes, ways, there)

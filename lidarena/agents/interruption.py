@@ -29,7 +29,7 @@ class TrainingStopped(KeyboardInterrupt):
         if resumable_from is None:
             rest = "it had no checkpoint yet"
         else:
-            rest = f"to go on from step {resumable_from:,}: python train.py --resume {folder}"
+            rest = f"to go on from step {resumable_from:,}: lidarena train --resume {folder}"
         super().__init__(f"stopped at step {step:,}; what was trained is in {folder}; {rest}")
 
 

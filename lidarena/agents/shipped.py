@@ -1,5 +1,6 @@
 """The trained agents that come with the package."""
 
+import os
 import warnings
 from pathlib import Path
 
@@ -25,8 +26,10 @@ def resolve(path: str | Path) -> Path:
     """Return the folder that ``"pretrained:NAME"`` stands for, or the path itself.
 
     Raises:
-        PolicyFileError: No such agent is shipped.
+        PolicyFileError: No such agent is shipped, or it is no path at all.
     """
+    if not isinstance(path, str | os.PathLike):
+        raise PolicyFileError(f"{path!r} is no policy; a run folder, its policy.json or 'pretrained:NAME' is needed")
     text = str(path)
     if not text.startswith(PREFIX):
         return Path(path)

@@ -15,11 +15,11 @@ from lidarena.agents.learners import make_model, normalized
 from lidarena.agents.training_config import CONFIG_FILE, TrainingConfig
 from lidarena.agents.training_run import TrainingRun, learn
 from lidarena.base.errors import ConfigError
-from lidarena.base.yaml_config import check_config, dump_config
+from lidarena.base.yaml_config import as_config, dump_config
 
 
 def train(
-    config: TrainingConfig | Mapping[str, Any] | None = None,
+    config: TrainingConfig | Mapping[str, Any] | str | Path | None = None,
     resume: str | Path | None = None,
     progress: bool = True,
     exact_out: bool = False,
@@ -30,8 +30,8 @@ def train(
     disk; the second one ends it at once, with the last checkpoint there.
 
     Args:
-        config: What is trained: from `lidarena.agents.load_config`, or a dictionary of what a YAML file would hold. May
-            be left out with ``resume``.
+        config: What is trained: a YAML file, a dictionary of what one would hold, or what `lidarena.agents.load_config`
+            made of one. May be left out with ``resume``.
         resume: Run folder of a training to go on with: from its last checkpoint, to the bit as if it had never stopped.
             A larger ``total_steps`` prolongs a training that had ended; one that has all its steps is left as it is.
         progress: Whether to show how far it is.
@@ -46,8 +46,7 @@ def train(
             used or resumed, or the weights have left the finite numbers.
         TrainingStopped: Somebody stopped it; a `KeyboardInterrupt` that tells how to go on.
     """
-    if isinstance(config, Mapping):
-        config = check_config(config, TrainingConfig)
+    config = None if config is None else as_config(config, TrainingConfig)
     folder = None if resume is None else Path(resume)
     start: Path | None = None
     if folder is not None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 _SUFFIX = ".part"
+_filling: list[Path] = []
 
 
 def write_bytes(path: str | Path, data: bytes) -> Path:
@@ -148,8 +149,17 @@ def _filled(target: Path, fill: Callable[[Path], None]) -> Path:
     temporary = _temporary(target)
     with _telling_of(target, temporary):
         temporary.mkdir(parents=True)
-        fill(temporary)
+        _filling.append(temporary)
+        try:
+            fill(temporary)
+        finally:
+            _filling.remove(temporary)
     return temporary
+
+
+def unfinished_folders() -> tuple[Path, ...]:
+    """Return the temporary folders that this process is filling, for whoever clears away if it is killed."""
+    return tuple(_filling)
 
 
 @contextlib.contextmanager

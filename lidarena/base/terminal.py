@@ -40,20 +40,23 @@ def exit_status(work: Callable[[], object]) -> int:
     """Do the work of a program that writes when all is done; what stops it is told on standard error in a sentence.
 
     Args:
-        work: What is to be done.
+        work: What is to be done; it may give an exit status of its own.
 
     Returns:
-        0, 2 for a refusal, 130 after Ctrl-C.
+        The work's own, else 0; 2 for a refusal, 130 after Ctrl-C.
     """
     try:
-        work()
+        status = work()
     except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
         return 2
     except KeyboardInterrupt:
         print("interrupted; nothing was written", file=sys.stderr)
         return 130
-    return 0
+    except BrokenPipeError:  # such as of lidarena list | head
+        sys.stderr.close()
+        return 0
+    return status if isinstance(status, int) else 0
 
 
 def _plain(error: UnicodeError) -> tuple[str, int]:

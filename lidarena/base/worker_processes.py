@@ -3,32 +3,39 @@
 import multiprocessing
 import multiprocessing.connection
 import os
+import shutil
 import threading
 from collections.abc import Callable
 from concurrent.futures import ProcessPoolExecutor
+from pathlib import Path
+
+from lidarena.base.files import unfinished_folders
 
 
 def worker_pool(count: int, prepare: Callable[[], None] | None = None) -> ProcessPoolExecutor:
     """Return a pool of processes that end as soon as this one is gone, even if it was killed.
 
-    They are spawned, not forked: torch and numba keep threads that a fork would copy in a broken state.
+    If it was, they also remove the folders that it was filling. They are spawned, not forked: torch and numba keep
+    threads that a fork would copy in a broken state.
 
     Args:
         count: Number of processes.
         prepare: Called once in each of them; a function of a module.
     """
     context = multiprocessing.get_context("spawn")
-    return ProcessPoolExecutor(count, mp_context=context, initializer=_begin, initargs=(prepare,))
+    return ProcessPoolExecutor(count, mp_context=context, initializer=_begin, initargs=(prepare, unfinished_folders()))
 
 
-def _begin(prepare: Callable[[], None] | None) -> None:
+def _begin(prepare: Callable[[], None] | None, unfinished: tuple[Path, ...]) -> None:
     parent = multiprocessing.parent_process()
     if parent is not None:
-        threading.Thread(target=_end_with, args=(parent.sentinel,), daemon=True, name="end with parent").start()
+        threading.Thread(target=_end_with, args=(parent.sentinel, unfinished), daemon=True).start()
     if prepare is not None:
         prepare()
 
 
-def _end_with(sentinel: int) -> None:
+def _end_with(sentinel: int, unfinished: tuple[Path, ...]) -> None:
     multiprocessing.connection.wait([sentinel])
+    for folder in unfinished:
+        shutil.rmtree(folder, ignore_errors=True)
     os._exit(1)  # no clean-up: there is nobody to report to, and whatever still runs may hold any lock

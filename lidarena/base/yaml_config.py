@@ -109,6 +109,25 @@ def check_config(
         raise ConfigError(f"{origin} is nested too deeply or contains itself") from None
 
 
+def as_config(given: Any, model: type[M]) -> M:
+    """Return the configuration that somebody gave in one of the ways in which one may.
+
+    Args:
+        given: One of ``model``, a mapping (see `check_config`) or the path of a YAML file (see `load_config`).
+        model: What it may hold.
+
+    Raises:
+        ConfigError: It is none of them, or holds what is wrong.
+    """
+    if isinstance(given, model):
+        return given
+    if isinstance(given, Mapping):
+        return check_config(given, model)
+    if isinstance(given, str | Path):
+        return load_config(given, model)
+    raise ConfigError(f"{given!r} is no configuration; a {model.__name__}, a dictionary or a YAML file is needed")
+
+
 def _blamed(content: Mapping[str, Any], model: type[BaseModel], overrides: Sequence[str], key: str, origin: str) -> str:
     """Who is to blame for what is wrong at ``key``: the last override that sets it, all of them, or the file."""
     for override in reversed(overrides):

@@ -58,6 +58,17 @@ def names() -> list[str]:
     return sorted(_entries)
 
 
+def drives(name: str) -> str | None:
+    """Return the family of environments that a baseline is for; None = any environment.
+
+    Raises:
+        ConfigError: for an unknown name.
+    """
+    if name not in names():
+        raise ConfigError(f"unknown baseline {name!r}{suggest(name, names())}")
+    return _entries[name].family
+
+
 def _load() -> None:
     """Import what registers baselines: the families' modules, once each, and the entry points of other packages."""
     for family in families():

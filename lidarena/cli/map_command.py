@@ -15,6 +15,8 @@ from lidarena.slam.logs.reading import read_recording
 from lidarena.slam.logs.recorded_log import RANGE_UNITS, LogOptions, RecordedLog
 from lidarena.slam.logs.relations import check_overlap, read_relations, relation_errors
 from lidarena.slam.logs.results_folder import check_folder
+from lidarena.slam.rbpf.likelihood_field import CELL
+from lidarena.world.extent import MAX_CELLS, check_resolution
 
 
 def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> None:
@@ -27,6 +29,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
     add("--relations", metavar="FILE", help="true relations; the mean errors against them are printed")
     add("--scan", metavar="TOPIC", help="of a bag, sensor_msgs/LaserScan; the fullest if left out")
     add("--odom", metavar="TOPIC", help="of a bag, nav_msgs/Odometry or tf; 'none' for scan matching alone")
+    add("--cell", type=float, default=CELL, metavar="M", help="side of the map's cells [m] (default: %(default)s)")
     add("--max-range", type=float, metavar="M", help="ranges from here on are no returns [m]")
     add("--fov", type=float, metavar="DEGREES", help="field of view of a FLASER's beams")
     add("--range-unit", default="m", choices=sorted(RANGE_UNITS), help="of the ranges (default: %(default)s)")
@@ -39,6 +42,7 @@ def run(options: argparse.Namespace) -> None:
     """Read and check everything, then do the work, then write."""
     out = Path(options.out or Path("results") / Path(options.log).name.split(".")[0])
     check_folder(out, MAP_FILES)
+    check_resolution("--cell", options.cell)
     relations = read_relations(options.relations) if options.relations else None
     log = read_recording(options.log, _log_options(options))
     if relations is not None:
@@ -50,7 +54,7 @@ def run(options: argparse.Namespace) -> None:
         print(f"note:       {log.skipped:,} torn lines or messages are left out")
     with _bar() as bar:
         task = bar.add_task("scans", total=None)
-        result = map_log(log, progress=lambda done, total: bar.update(task, completed=done, total=total))
+        result = map_log(log, None, lambda done, total: bar.update(task, completed=done, total=total), options.cell)
     errors = None
     if relations is not None:
         errors = relation_errors(result.trajectory.times, result.trajectory.poses, relations, log.name)
@@ -80,6 +84,9 @@ def _report(log: RecordedLog, result: LogMap) -> None:
     rows, columns = result.map.occupancy.shape
     side, kept = result.map.resolution, sum(loop.kept for loop in result.loops)
     print(f"map:        {columns * side:.1f} x {rows * side:.1f} m in cells of {side:g} m")
+    if rows * columns > MAX_CELLS:
+        cells = f"{rows * columns / 1e6:.0f} million cells, of which environments load {MAX_CELLS // 10**6}"
+        print(f"note:       the map has {cells}; larger ones (--cell {2 * side:g}) make it smaller")
     print(f"loops:      {kept:,} closed, {len(result.loops) - kept:,} rejected")
     print(f"speed:      {len(log.ranges) / max(result.seconds, 1e-9):,.0f} scans a second of processor time")
     for doubt in result.doubts:

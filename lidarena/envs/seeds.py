@@ -1,7 +1,7 @@
 """Seeds as Gymnasium's users give them: Python's and NumPy's whole numbers, lists, tuples and arrays of them."""
 
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,10 +31,14 @@ def seeds_of(seed: Seeds, worlds: int) -> list[int | None]:
     Raises:
         ConfigError: The number of seeds is not that of the worlds, or one is no whole number.
     """
-    if isinstance(seed, list | tuple) or (isinstance(seed, np.ndarray) and seed.ndim == 1):
-        seeds = [checked_seed(one) for one in seed]
+    listed = isinstance(seed, Sequence) and not isinstance(seed, str | bytes)
+    if listed or (isinstance(seed, np.ndarray) and seed.ndim == 1):
+        seeds = [checked_seed(one) for one in cast(Sequence[Seed], seed)]
         if len(seeds) != worlds:
             raise ConfigError(f"{len(seeds)} seeds were given for {worlds} worlds; one for each is needed")
         return seeds
-    first = checked_seed(seed)
+    try:
+        first = checked_seed(seed)
+    except ConfigError as refusal:
+        raise ConfigError(f"{refusal}, or one of them for each of the {worlds} worlds") from None
     return [None if first is None else first + world for world in range(worlds)]

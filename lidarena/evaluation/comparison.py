@@ -8,13 +8,15 @@ from typing import Any
 
 from rich.console import Console
 
-from lidarena.base.yaml_config import check_config
+from lidarena.base.yaml_config import as_config
 from lidarena.evaluation.comparison_config import ComparisonConfig, PolicyEntry
 from lidarena.evaluation.participants import check
 from lidarena.evaluation.pictures import Cell, draw_pictures
 from lidarena.evaluation.plane import FRONT_FILE, planes_of, pooled, write_front
 from lidarena.evaluation.plane_picture import draw_planes
 from lidarena.evaluation.progress_report import report_progress
+from lidarena.evaluation.report.folder_report import write_comparison_report
+from lidarena.evaluation.report.sources import replay_place
 from lidarena.evaluation.results import (
     RESULTS_FILE,
     Row,
@@ -60,13 +62,13 @@ class Comparison:
         return told
 
 
-def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | None = None) -> Comparison:
+def compare(config: ComparisonConfig | Mapping[str, Any] | str | Path, console: Console | None = None) -> Comparison:
     """Run every policy in every environment on the same seeds, and write what came of it.
 
     The folder appears when everything is in it; earlier results of the same name are kept under another one.
 
     Args:
-        config: What to compare: from `load_config`, or a dictionary of what a YAML file would hold.
+        config: What to compare: a YAML file, a dictionary of what one would hold, or what `load_config` made of one.
         console: Where progress is reported; nowhere if None.
 
     Returns:
@@ -77,8 +79,7 @@ def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | Non
         EpisodeError: An environment or a policy raised.
         WriteError: The place of the results is not writable or full.
     """
-    if isinstance(config, Mapping):
-        config = check_config(config, ComparisonConfig)
+    config = as_config(config, ComparisonConfig)
     console = console or Console(quiet=True)
     check_folder(config.folder)
     check(config)
@@ -90,7 +91,7 @@ def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | Non
     drawn: list[Path] = []
 
     def fill(folder: Path) -> None:
-        found.extend(_run(config, folder / "videos", console))
+        found.extend(_run(config, folder, console))
         rows.extend(summarise(cell.env.label, cell.policy.title, cell.episodes) for line in found for cell in line)
         write_tables(folder, config, rows)
         planes = planes_of(rows, config.participants)
@@ -100,6 +101,9 @@ def compare(config: ComparisonConfig | Mapping[str, Any], console: Console | Non
         if config.pictures:
             files = draw_planes(planes, whole, folder / "pictures") + draw_pictures(found, folder / "pictures")
             drawn.extend(path.relative_to(folder) for path in files)
+        if config.report:
+            _write_replays(folder, found)
+            write_comparison_report(folder, config.folder.name)
 
     earlier = write_results_folder(config.folder, fill)
     videos = sorted((config.folder / "videos").rglob("*.*"))
@@ -117,13 +121,19 @@ def write_tables(folder: Path, config: ComparisonConfig, rows: Sequence[Row]) ->
         (folder / name).write_text(text, encoding="utf-8")
 
 
+def _write_replays(folder: Path, cells: Sequence[Sequence[Cell]]) -> None:
+    for cell in (cell for line in cells for cell in line):
+        if cell.episodes[0].replay is not None:
+            cell.episodes[0].replay.write(folder / replay_place(cell.env.label, cell.policy.title))
+
+
 def _reference(policies: Sequence[PolicyEntry]) -> str:
     """The policy over which the values of all environments are pooled: `frontier`, or else the first."""
     return next((policy.title for policy in policies if policy.name == "frontier"), policies[0].title)
 
 
-def _run(config: ComparisonConfig, videos: Path, console: Console) -> list[list[Cell]]:
-    tasks = list_tasks(config, videos)
+def _run(config: ComparisonConfig, folder: Path, console: Console) -> list[list[Cell]]:
+    tasks = list_tasks(config, folder)
     with report_progress(len(tasks), console) as advance:
         episodes = iter(run_tasks(tasks, config.workers, lambda task: advance(str(task))))
     counts = Counter((task.env.label, task.policy.title) for task in tasks)

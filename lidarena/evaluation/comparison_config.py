@@ -148,7 +148,9 @@ class ComparisonConfig(ConfigModel):
         episodes: Per environment and policy, where the environment's entry does not say otherwise.
         seed: Episode k of every policy runs on seed + k, so that policies meet the same worlds.
         pictures: Draw the first episode of each, an overview and the progress over time (PNG).
+        report: Write ``report.html``, with the first episode of each to be played.
         videos: Record the first episode of each: ``mp4``, ``gif``, or false.
+        record: Write the first episode of each as a rosbag 2 (MCAP) into ``bags``.
         out: Folder of the results.
         workers: Processes; one per core if left out.
     """
@@ -159,7 +161,9 @@ class ComparisonConfig(ConfigModel):
     episodes: int = Field(default=20, ge=1, le=100_000)
     seed: int = Field(default=0, ge=0, lt=2**31)
     pictures: bool = True
+    report: bool = True
     videos: Literal["mp4", "gif", False] = False
+    record: bool = False
     out: str = Field(default="results/comparison", min_length=1)
     workers: int | None = Field(default=None, ge=1, le=1024)
 

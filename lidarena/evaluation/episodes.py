@@ -1,12 +1,13 @@
 """One episode: drive a policy through an environment, and let its family measure and draw it."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from time import perf_counter
 from typing import Any
 
 import numpy as np
 
+from lidarena.base.errors import ConfigError
 from lidarena.base.old_names import takes_old_keywords
 from lidarena.baselines import Policy
 from lidarena.envs.infos import Info
@@ -16,6 +17,7 @@ from lidarena.evaluation.measures.table_columns import Measure
 from lidarena.evaluation.picture import Picture
 from lidarena.evaluation.progress_curve import ProgressCurve
 from lidarena.evaluation.recording import Env, Recording
+from lidarena.evaluation.replay import EpisodeReplay, ReplayRecorder
 
 
 @dataclass(frozen=True)
@@ -33,6 +35,7 @@ class Episode:
         picture: To be drawn, if it was asked for and the family draws any.
         map: Of a folder of maps, which one.
         error: Why there is nothing, where a map of a folder could not be used; a sentence.
+        replay: To be played in a report, if it was asked for and the environment tells poses.
     """
 
     seed: int
@@ -44,6 +47,7 @@ class Episode:
     picture: Picture | None = None
     map: str | None = None
     error: str | None = None
+    replay: EpisodeReplay | None = None
 
 
 def policy_seed(seed: int) -> int:
@@ -64,7 +68,9 @@ def run_episode(
     *,
     max_steps: int | None = None,
     keep_picture: bool = False,
+    keep_replay: bool = False,
     record: Callable[[Env], None] | None = None,
+    watch: Callable[[Recording], None] | None = None,
 ) -> Episode:
     """Run one episode and measure it.
 
@@ -74,18 +80,24 @@ def run_episode(
         seed: Of the environment; the policy gets `policy_seed` of it.
         max_steps: Stop here, if the environment does not end the episode before.
         keep_picture: Keep what is to be drawn.
+        keep_replay: Keep what is to be played.
         record: Called with the environment after the reset and after every step, for a video.
+        watch: Called with the recording each time it has noted an info, such as by a rosbag's writer.
 
     Returns:
         The measured episode.
 
     Raises:
-        ConfigError: The environment's family is not registered, or tells measures that cannot be had.
+        ConfigError: The environment is a batch, or its family is not registered, or tells measures that cannot be had.
     """
+    if hasattr(env, "num_envs"):
+        raise ConfigError(f"run_episode() runs in a single environment, not in {env.num_envs} at once")
     family = measures_of(env)
     recording = Recording(env, policy, family.kept)
     recording.step_limit = _step_limit(env, max_steps)
-    _drive(recording, seed, max_steps, record)
+    recorder = ReplayRecorder() if keep_replay else None
+    watchers = [one for one in (watch, recorder.note if recorder is not None else None) if one is not None]
+    _drive(recording, seed, max_steps, record, watchers)
     recording.ending = family.ending(recording)
     values = family.values(recording)
     description = family.describe(values)
@@ -97,15 +109,28 @@ def run_episode(
         f"{description}: {recording.ending}" if description else recording.ending,
         family.progress(recording),
         family.picture(recording) if keep_picture else None,
+        replay=recorder.finish(recording) if recorder is not None else None,
     )
 
 
-def _drive(recording: Recording, seed: int, max_steps: int | None, record: Callable[[Env], None] | None) -> None:
+def _drive(
+    recording: Recording,
+    seed: int,
+    max_steps: int | None,
+    record: Callable[[Env], None] | None,
+    watchers: Sequence[Callable[[Recording], None]],
+) -> None:
     """Run the episode, noting what the family wants to be kept."""
     env, policy = recording.env, recording.policy
+
+    def note(info: Mapping[str, Any]) -> None:
+        recording.note(info)
+        for watcher in watchers:
+            watcher(recording)
+
     observation, info = env.reset(seed=seed)
     policy.reset(seed=policy_seed(seed))
-    recording.note(info)
+    note(info)
     while not (recording.terminated or recording.truncated):
         if record:
             record(env)
@@ -116,7 +141,7 @@ def _drive(recording: Recording, seed: int, max_steps: int | None, record: Calla
             return
         observation, reward, terminated, truncated, info = env.step(action)
         recording.rewards.append(float(reward))
-        recording.note(info)
+        note(info)
         recording.terminated = bool(terminated)
         recording.truncated = bool(truncated) or recording.steps == max_steps
     if record:

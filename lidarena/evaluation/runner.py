@@ -7,7 +7,7 @@ import traceback
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,6 +20,7 @@ from lidarena.base.errors import LidarenaError, MapError
 from lidarena.base.worker_processes import worker_pool
 from lidarena.baselines import Policy
 from lidarena.envs.compilation import announced_compilation, keep_quiet
+from lidarena.evaluation.bag_recorder import BagRecorder
 from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
 from lidarena.evaluation.episodes import Episode, run_episode
 from lidarena.evaluation.map_folders import MapCase
@@ -57,6 +58,8 @@ class Task:
         video: File of the video, if one is wanted.
         max_steps: Stop here; None leaves it to the environment.
         case: The map, of a folder of them.
+        keep_replay: Keep what the report's player needs.
+        bag: Folder of the rosbag, if one is wanted.
     """
 
     env: EnvEntry
@@ -66,6 +69,8 @@ class Task:
     video: Path | None = None
     max_steps: int | None = None
     case: MapCase | None = None
+    keep_replay: bool = False
+    bag: Path | None = None
 
     def __str__(self) -> str:
         which = f"seed {self.seed}" if self.case is None else f"map {self.case.name!r}"
@@ -82,25 +87,30 @@ class _Failure:
     of_map: bool = False
 
 
-def list_tasks(config: ComparisonConfig, videos: Path) -> list[Task]:
+def list_tasks(config: ComparisonConfig, folder: Path) -> list[Task]:
     """Return every episode of a comparison; the first of each environment and policy is drawn and recorded.
 
     The first is fixed before anything is known about it: a picture of the best one would be advertising.
 
     Args:
         config: The comparison.
-        videos: Folder for the videos.
+        folder: Of the results, for ``videos`` and ``bags``.
     """
     tasks = []
     for env in config.worlds:
         cases = config.cases(env)
         for policy in config.participants:
             for number, case in enumerate(cases):
-                first = number == 0
-                video = videos / place_of(env, policy, str(config.videos)) if config.videos and first else None
-                picture = config.pictures and first
-                tasks.append(Task(env, policy, config.seed + number, picture, video, case=case))
+                task = Task(env, policy, config.seed + number, case=case)
+                tasks.append(_documented(task, config, folder) if number == 0 else task)
     return tasks
+
+
+def _documented(task: Task, config: ComparisonConfig, folder: Path) -> Task:
+    """The task with everything that is kept of a first episode."""
+    video = folder / "videos" / place_of(task.env, task.policy, str(config.videos)) if config.videos else None
+    bag = folder / "bags" / place_of(task.env, task.policy, "mcap") if config.record else None
+    return replace(task, keep_picture=config.pictures, video=video, keep_replay=config.report, bag=bag)
 
 
 def place_of(env: EnvEntry, policy: PolicyEntry, suffix: str) -> Path:
@@ -264,11 +274,17 @@ def _run(task: Task) -> Episode:
 
 
 def _recorded(task: Task, env: Env, policy: Policy) -> Episode:
-    how: dict[str, Any] = {"max_steps": task.max_steps, "keep_picture": task.keep_picture}
-    if task.video is None:
+    how: dict[str, Any] = {
+        "max_steps": task.max_steps,
+        "keep_picture": task.keep_picture,
+        "keep_replay": task.keep_replay,
+    }
+    with ExitStack() as stack:
+        if task.video is not None:
+            how["record"] = stack.enter_context(VideoRecorder(task.video)).add
+        if task.bag is not None:
+            how["watch"] = stack.enter_context(BagRecorder(task.bag)).note
         return run_episode(env, policy, task.seed, **how)
-    with VideoRecorder(task.video) as recorder:
-        return run_episode(env, policy, task.seed, record=recorder.add, **how)
 
 
 @contextmanager

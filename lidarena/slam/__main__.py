@@ -13,6 +13,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeRemainingColumn
 
 from lidarena.base.terminal import exit_status, make_output_printable
+from lidarena.slam.logs.attempts import DOUBTFUL
 from lidarena.slam.logs.carmen import read_log
 from lidarena.slam.logs.relations import RelationErrors, check_overlap, read_relations, relation_errors
 from lidarena.slam.logs.replay import Progress as Advance
@@ -53,6 +54,11 @@ def _report(result: Replay, errors: RelationErrors | None, out: Path, earlier: P
     side = result.map.resolution
     print(f"updates:    {len(result.readings):,} scans, {result.updates_per_second:,.0f} a second of processor time")
     print(f"map:        {columns * side:.1f} x {rows * side:.1f} m in cells of {side:g} m")
+    if len(result.evidence) > 1:
+        near, far = result.spread.nearest, result.spread.farthest
+        print(f"attempts:   {len(result.evidence)}, the others {near:.2f} to {far:.2f} m from the one that fits best")
+        if near > DOUBTFUL:
+            print("warning:    no two attempts agree; the map may be torn or folded", file=sys.stderr)
     if errors is not None:
         print(f"relations:  {errors}")
     print(f"results:    {out}/picture.png (also map.yaml, map.pgm, trajectory.tum, results.json)")

@@ -16,6 +16,7 @@ from lidarena.slam.world_estimators import WorldEstimators
 
 BUILT_IN = {
     "rbpf": "lidarena.slam.rbpf.estimator:ParticleFilterEstimator",
+    "graph": "lidarena.slam.graph.estimator:GraphEstimator",
     "odometry": "lidarena.slam.dead_reckoning:DeadReckoningEstimator",
     "truth": "lidarena.slam.true_pose:TruePoseEstimator",
 }

@@ -8,6 +8,8 @@ MIN_RESOLUTION, MAX_RESOLUTION = 0.005, 2.0
 """Sides of a cell that are believed [m]."""
 MAX_CELLS = 20_000_000
 """Largest number of cells of a map."""
+MAX_DRAWN_CELLS = 400_000_000
+"""Largest number of cells of a map that is only written, never driven in."""
 MAX_SIDE = 1000.0
 """Longest side of a map [m]."""
 
@@ -29,7 +31,7 @@ def check_resolution(where: str, resolution: float) -> float:
     return resolution
 
 
-def check_extent(where: str, rows: int, columns: int, resolution: float) -> None:
+def check_extent(where: str, rows: int, columns: int, resolution: float, most: int = MAX_CELLS) -> None:
     """Refuse a grid too large to be a map for a robot, before memory is spent on it.
 
     Raises:
@@ -38,7 +40,7 @@ def check_extent(where: str, rows: int, columns: int, resolution: float) -> None
     size = f"{where} has {columns} x {rows} cells of {resolution:g} m"
     if rows < 1 or columns < 1:
         raise MapError(f"{size}; at least one cell is needed")
-    if rows * columns > MAX_CELLS:
-        raise MapError(f"{size}; at most {MAX_CELLS // 1_000_000} million cells are allowed")
+    if rows * columns > most:
+        raise MapError(f"{size}; at most {most // 1_000_000} million cells are allowed, so they must be larger ones")
     if max(rows, columns) * resolution > MAX_SIDE:
         raise MapError(f"{size}; sides of at most {MAX_SIDE:g} m are allowed, so its cells may be smaller")

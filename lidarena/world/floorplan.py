@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import MapError
 from lidarena.base.jit import leaf
+from lidarena.world.default_start import find_start
 from lidarena.world.raster import Raster, rasterize
 
 Pose = tuple[float, float, float]
@@ -29,6 +30,8 @@ class Floorplan:
         circles: Round pillars, ``(C, 3)`` as x, y, radius [m].
         bounds: Extent of the drawing, x_min, y_min, x_max, y_max [m].
         start: Default start pose (x, y, theta) [m, m, rad].
+        parts: Where the start was looked for: areas of the parts between which there is no way for a robot, the largest
+            first [m²]; the start is in the first.
     """
 
     name: str
@@ -36,6 +39,7 @@ class Floorplan:
     circles: NDArray[np.float64]
     bounds: Bounds
     start: Pose
+    parts: tuple[float, ...] = field(default=(), repr=False, compare=False)
     _rasters: dict[float, Raster] = field(default_factory=dict, repr=False, compare=False)
 
     @classmethod
@@ -58,7 +62,8 @@ class Floorplan:
             polygons: Simple polygons ``(n, 2)``, solid inside, in either direction.
             circles: ``(n, 3)`` as x, y, radius [m].
             thickness: Of the walls [m].
-            start: Default start pose; None takes the free place farthest from every wall.
+            start: Default start pose; None takes the place farthest from every wall in the largest
+                connected part.
 
         Raises:
             MapError: A shape is not finite or degenerate, or the start stands in a wall, or nothing is free.
@@ -87,7 +92,8 @@ class Floorplan:
             occupied: ``[row, column]``, row 0 at the smallest y.
             resolution: Side of a cell [m].
             origin: Pose of the lower-left corner of cell [0, 0] [m, m, rad].
-            start: Default start pose; None takes the free place farthest from every wall.
+            start: Default start pose; None takes the place farthest from every wall in the largest
+                connected part.
 
         Raises:
             MapError: No cell is free, or the start stands in a wall.
@@ -118,7 +124,7 @@ class Floorplan:
             raise MapError(f"map {name!r} has empty bounds {bounds}; x_min < x_max and y_min < y_max are needed")
         plan = cls(name, edges, circles, bounds, start if start is not None else (0.0, 0.0, 0.0))
         if start is None:
-            return replace(plan, start=plan._roomiest_place())
+            return plan._with_default_start()
         return plan.with_start(start)
 
     def with_start(self, start: Pose) -> Self:
@@ -127,6 +133,8 @@ class Floorplan:
         Raises:
             MapError: The start is not finite, lies outside the bounds or stands in a wall.
         """
+        if np.shape(start) != (3,):
+            raise MapError(f"start {start} is no pose; x, y in metres and theta in radians are needed")
         x, y, theta = (float(value) for value in start)
         if not np.isfinite([x, y, theta]).all():
             raise MapError(f"start {start} is not finite; give x, y in metres and theta in radians")
@@ -174,19 +182,22 @@ class Floorplan:
         area = np.sum(self.edges[:, 0] * self.edges[:, 3] - self.edges[:, 1] * self.edges[:, 2]) / 2
         return -1 if area < 0 else 0
 
-    def _roomiest_place(self) -> Pose:
+    def _with_default_start(self) -> Self:
+        """The same plan with the place farthest from every wall in the largest connected part as its start.
+
+        Raises:
+            MapError: A robot fits nowhere.
+        """
         raster = self.raster(0.05 if max(self.bounds[2:]) - min(self.bounds[:2]) < 200 else 0.2)
-        clearance = np.where(raster.solid, 0.0, raster.clearance)
         rows, columns = raster.solid.shape
         x = raster.origin[0] + (np.arange(columns) + 0.5) * raster.resolution
         y = raster.origin[1] + (np.arange(rows) + 0.5) * raster.resolution
         inside_x = (x > self.bounds[0]) & (x < self.bounds[2])
         inside_y = (y > self.bounds[1]) & (y < self.bounds[3])
-        clearance = np.where(inside_y[:, None] & inside_x[None, :], clearance, 0.0)
-        row, column = np.unravel_index(int(np.argmax(clearance)), clearance.shape)
-        if clearance[row, column] < START_CLEARANCE:
+        found = find_start(raster, inside_y[:, None] & inside_x[None, :], START_CLEARANCE)
+        if not found.parts:
             raise MapError(f"map {self.name!r} has no free space with {START_CLEARANCE} m of clearance for the robot")
-        return (float(x[column]), float(y[row]), 0.0)
+        return replace(self, start=(float(found.place[0]), float(found.place[1]), 0.0), parts=found.parts)
 
 
 def _wall_edges(lines: NDArray[np.float64], thickness: float) -> NDArray[np.float64]:

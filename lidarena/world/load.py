@@ -1,6 +1,7 @@
 """Floor plans from what users write in ``map=``: a name, a file, or a maze to be generated."""
 
 import os
+import warnings
 from functools import lru_cache
 from pathlib import Path
 
@@ -43,13 +44,24 @@ def load_floorplan(spec: MapSpec, start: Pose | None = None) -> Floorplan:
             ``"maze:7?width=10&height=8&corridor=1.2&loops=0.2&dead_ends=0.5&thickness=0.1"`` (see ``generate_maze``).
             A ``Floorplan`` is passed through. Of ``"random:KIND"`` (see ``random_plan``), of a generator of one's own
             (see ``PlanGenerator``) or its ``"module:callable"`` the plan with the number 0 is taken.
-        start: Start pose x, y, theta instead of the plan's own [m, m, rad].
+        start: Start pose x, y, theta instead of the plan's own [m, m, rad]. A map from a file has none of its own: it
+            is the roomiest place of its largest connected part, and a warning tells if there are several parts.
 
     Raises:
         MapError: The plan does not exist, its file is damaged, an option is out of range, nothing in it is free, or
             the start stands in a wall.
     """
-    return _find(spec) if start is None else _find(spec).with_start(start)
+    plan = _find(spec)
+    if start is not None:
+        return plan.with_start(start)
+    if len(plan.parts) > 1 and str(spec).endswith((".yaml", ".yml")):
+        others = ", ".join(f"{area:.0f}" for area in plan.parts[1:4]) + (", …" if len(plan.parts) > 4 else "")
+        warnings.warn(
+            f"map {plan.name!r} has {len(plan.parts)} parts between which there is no way for a robot; the start is in "
+            f"the largest, of {plan.parts[0]:.0f} m² (the others: {others} m²); give start to choose another",
+            stacklevel=2,
+        )
+    return plan
 
 
 def generator_of(spec: object) -> PlanGenerator | None:

@@ -14,13 +14,17 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import MapError
 from lidarena.base.files import write_bytes
-from lidarena.world.extent import check_extent, check_resolution
+from lidarena.world.extent import MAX_DRAWN_CELLS, check_extent, check_resolution
 from lidarena.world.picture import read_picture
 
 FREE_THRESH, OCCUPIED_THRESH = 0.196, 0.65
 """What the map savers write, and what is taken where a YAML file names no threshold."""
 FREE_GREY, UNKNOWN_GREY, OCCUPIED_GREY = 254, 205, 0
 """The grey values that the map savers write."""
+
+_STANDS_OUT, _NEIGHBOURS, _FEWEST = 3, 3, 50
+"""A grey is a code if it is so many times as frequent as the greys that differ by up to so much, together, and if so
+many pixels have it."""
 
 _KEYS = ("image", "resolution", "origin", "negate", "occupied_thresh", "free_thresh", "mode")
 _REQUIRED = ("image", "resolution", "origin")
@@ -66,9 +70,9 @@ def load_map(path: str | os.PathLike[str]) -> OccupancyMap:
 
     A pixel v has the occupancy p = (255 - v) / 255, or v / 255 with ``negate``; p > ``occupied_thresh`` is occupied,
     p < ``free_thresh`` free, all else unknown. Transparent pixels are unknown. In a picture that has the savers' own
-    grey for free cells (254), or nothing but their greys (0, 205, 254, 255), 205 is unknown whatever the threshold:
-    some savers print a ``free_thresh`` of 0.25 beside it, by which all unmapped surroundings (p = 0.196) would read as
-    free, though someone drew a line of another grey into it.
+    grey for free cells (254), or in which 205 stands out among its neighbouring greys, 205 is unknown whatever the
+    threshold: some savers print a ``free_thresh`` of 0.25 beside it, by which all unmapped surroundings (p = 0.196)
+    would read as free, though someone drew a line of another grey into it.
 
     Args:
         path: The YAML file.
@@ -83,11 +87,18 @@ def load_map(path: str | os.PathLike[str]) -> OccupancyMap:
     occupancy = np.full(grey.shape, -1, dtype=np.int8)
     occupancy[p < description.free_thresh] = 0
     occupancy[p > description.occupied_thresh] = 100
-    saved = np.any(grey == FREE_GREY) or np.isin(grey, (OCCUPIED_GREY, UNKNOWN_GREY, 255)).all()
-    if saved and not description.negate:
+    if not description.negate and (np.any(grey == FREE_GREY) or _is_code(grey)):
         occupancy[grey == UNKNOWN_GREY] = -1
     occupancy[transparent] = -1
     return OccupancyMap(occupancy[::-1].copy(), description.resolution, description.origin)
+
+
+def _is_code(grey: NDArray[np.float64]) -> bool:
+    """Whether the savers' grey for unknown cells was meant as such: shades do not stand out among their neighbours."""
+    unknown = int(np.sum(grey == UNKNOWN_GREY))
+    return unknown >= _FEWEST and unknown > _STANDS_OUT * int(
+        np.sum((np.abs(grey - UNKNOWN_GREY) <= _NEIGHBOURS) & (grey != UNKNOWN_GREY))
+    )
 
 
 def read_description(path: str | os.PathLike[str]) -> MapDescription:
@@ -148,7 +159,7 @@ def save_map(
         raise MapError(f"{where} has shape {grid.shape} of {grid.dtype}; a 2-D array of integers is needed")
     if grid.min() < -1 or grid.max() > 100:
         raise MapError(f"{where} holds {grid.min()} to {grid.max()}; -1 (unknown) to 100 (occupied) are allowed")
-    check_extent(where, grid.shape[0], grid.shape[1], check_resolution(where, resolution))
+    check_extent(where, grid.shape[0], grid.shape[1], check_resolution(where, resolution), MAX_DRAWN_CELLS)
     pose = _origin([*origin] if len(origin) == 3 else [*origin, 0.0], where)
     base = Path(path)
     base = base.with_suffix("") if base.suffix in (".yaml", ".yml", ".pgm") else base

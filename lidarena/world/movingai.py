@@ -48,7 +48,7 @@ def movingai_floorplan(
         path: The file.
         cell: Side of a cell [m]; the default leaves one-cell corridors wide enough for a TurtleBot.
         name: What messages call the plan; None takes the file's name without its ending.
-        start: Start pose; None takes the free place farthest from every wall.
+        start: Start pose; None takes the roomiest place of the largest connected part.
 
     Raises:
         MapError: As ``load_movingai``; or the cell is out of range, or no cell is passable.

@@ -53,7 +53,7 @@ def test_ctrl_c_ends_the_training_after_the_update(
 ) -> None:
     before = signal.getsignal(number)
     press_ctrl_c(monkeypatch, at_step=200, number=number)
-    with pytest.raises(TrainingStopped, match=r"stopped at step 256; .*train.py --resume") as stopped:
+    with pytest.raises(TrainingStopped, match=r"stopped at step 256; .*lidarena train --resume") as stopped:
         train(small(tmp_path / "run", "checkpoint_every=10_000"))
     assert "once more to stop at once" in capsys.readouterr().err
     assert (stopped.value.folder, stopped.value.step) == (tmp_path / "run", 256)

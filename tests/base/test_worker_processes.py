@@ -15,10 +15,15 @@ PROGRAM = """
 import os, sys, time
 sys.path.insert(0, {root!r})
 from tests.base.test_worker_processes import tell_and_sleep
+from lidarena.base.files import write_folder
 from lidarena.base.worker_processes import worker_pool
-if __name__ == "__main__":
+
+def fill(place):
     with worker_pool(2) as pool:
         list(pool.map(tell_and_sleep, [{folder!r}] * 2))
+
+if __name__ == "__main__":
+    write_folder({out!r}, fill)
 """
 
 
@@ -51,7 +56,7 @@ def test_processes_end_with_the_one_that_was_killed(tmp_path: Path) -> None:
     program = tmp_path / "program.py"
     pids = tmp_path / "pids"
     pids.mkdir()
-    program.write_text(PROGRAM.format(root=str(Path(__file__).parents[2]), folder=str(pids)))
+    program.write_text(PROGRAM.format(root=str(Path(__file__).parents[2]), folder=str(pids), out=str(tmp_path / "out")))
     started = subprocess.Popen([sys.executable, str(program)])
     try:
         workers = wait_for(lambda: [int(path.name) for path in pids.iterdir()], 2)
@@ -60,6 +65,7 @@ def test_processes_end_with_the_one_that_was_killed(tmp_path: Path) -> None:
         started.send_signal(signal.SIGKILL)
         started.wait()
     assert wait_for(lambda: [worker for worker in workers if not is_running(worker)], 2) == workers
+    assert {path.name for path in tmp_path.iterdir()} == {"program.py", "pids"}  # nor is what was begun left behind
 
 
 def wait_for(what, count: int) -> list[int]:  # type: ignore[no-untyped-def]

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from pydantic import Field
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.yaml_config import ConfigModel, check_config, dump_config, load_config
+from lidarena.base.yaml_config import ConfigModel, as_config, check_config, dump_config, load_config
 
 
 class Optimizer(ConfigModel):
@@ -208,3 +208,14 @@ def test_dumping_leaves_no_temporary_files(tmp_path: Path) -> None:
     dump_config(Config(seed=2), tmp_path / "config.yaml")
     assert [file.name for file in tmp_path.iterdir()] == ["config.yaml"]
     assert yaml.safe_load((tmp_path / "config.yaml").read_text())["seed"] == 2
+
+
+def test_a_configuration_is_given_as_itself_a_dictionary_or_a_file(tmp_path: Path) -> None:
+    content = {"seed": 3, "optimizer": {"steps": 7}}
+    config = check_config(content, Config)
+    dump_config(config, tmp_path / "config.yaml")
+    given = (config, content, tmp_path / "config.yaml", str(tmp_path / "config.yaml"))
+    assert [as_config(one, Config) for one in given] == [config] * 4
+    for wrong in (3, None, [content], b"config.yaml"):
+        with pytest.raises(ConfigError, match="is no configuration; a Config, a dictionary or a YAML file is needed"):
+            as_config(wrong, Config)

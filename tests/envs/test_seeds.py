@@ -24,9 +24,11 @@ def test_none_leaves_it_to_chance() -> None:
     assert checked_seed(None) is None and seeds_of(None, 3) == [None, None, None]
 
 
-@pytest.mark.parametrize("seeds", [[4, 0, 9], (4, 0, 9), np.array([4, 0, 9]), np.array([4, 0, 9], np.uint8)])
+@pytest.mark.parametrize(
+    "seeds", [[4, 0, 9], (4, 0, 9), range(4, 7), np.array([4, 0, 9]), np.array([4, 0, 9], np.uint8)]
+)
 def test_one_seed_a_world(seeds: Any) -> None:
-    assert seeds_of(seeds, 3) == [4, 0, 9]
+    assert seeds_of(seeds, 3) == [int(seed) for seed in seeds]
 
 
 def test_one_seed_counts_up_and_none_may_stand_among_others() -> None:
@@ -45,4 +47,10 @@ def test_there_must_be_one_for_every_world(seeds: Any) -> None:
 )
 def test_no_other_seeds_are_taken(seeds: Any) -> None:
     with pytest.raises(ConfigError, match="must be a whole number"):
+        seeds_of(seeds, 3)
+
+
+@pytest.mark.parametrize("seeds", ["123", {1, 2, 3}, 1.5, np.zeros((1, 3), int)])
+def test_what_are_no_seeds_is_refused_and_says_that_there_may_be_several(seeds: Any) -> None:
+    with pytest.raises(ConfigError, match=r"^seed = .* or one of them for each of the 3 worlds$"):
         seeds_of(seeds, 3)

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import gymnasium as gym
 import numpy as np
 import pytest
 
@@ -29,6 +30,12 @@ class Turner(Driver):
 
     def act(self, observation: Any, info: dict[str, Any]) -> int:
         return 1
+
+
+def test_a_batch_is_refused() -> None:
+    envs = gym.make_vec("lidarena/Arena-v0", 2, "vector_entry_point")
+    with pytest.raises(ConfigError, match="runs in a single environment, not in 2 at once"):
+        run_episode(envs, Driver(envs), seed=0)
 
 
 def test_the_truth_is_kept_from_the_policy() -> None:

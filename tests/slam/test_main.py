@@ -18,6 +18,15 @@ from lidarena.world.map_server import load_map
 from tests.slam.drive import ring
 from tests.slam.logs.recorded import LAP, record, relations_of, way
 
+KEYS = [
+    "translation_m",
+    "rotation_deg",
+    "relations",
+    "scan_updates",
+    "updates_per_second",
+    "evidence_of_attempts",
+    "spread_of_attempts_m",
+]
 TRUTH = way(LAP)
 LOG = record(ring(), TRUTH)
 RELATIONS = relations_of(LOG, TRUTH)
@@ -40,7 +49,7 @@ def test_the_command_writes_everything_and_keeps_what_was_there(
     assert sorted(p.name for p in out.iterdir()) == sorted(FILES)
     assert sorted(p.name for p in out.parent.iterdir()) == ["out", "out.1"]
     results = json.loads((out / "results.json").read_text())
-    assert list(results) == ["translation_m", "rotation_deg", "relations", "scan_updates", "updates_per_second"]
+    assert list(results) == KEYS
     trajectory = load_tum(out / "trajectory.tum")
     errors = relation_errors(trajectory.times, trajectory.poses, read_relations(relations))
     assert results["translation_m"]["mean"] == pytest.approx(errors.translation.mean(), abs=1e-4)

@@ -67,7 +67,7 @@ def test_options_reach_the_estimator() -> None:
 def test_names_are_those_that_users_typed() -> None:
     assert estimator_name({"name": "rbpf", "particles": 3}) == estimator_name("rbpf") == "rbpf"
     assert estimator_name(RayMapper) == "RayMapper" and estimator_name("a:B") == "a:B"
-    assert set(BUILT_IN) == {"rbpf", "odometry", "truth"}
+    assert set(BUILT_IN) == {"rbpf", "graph", "odometry", "truth"}
 
 
 @pytest.mark.parametrize(
@@ -76,7 +76,7 @@ def test_names_are_those_that_users_typed() -> None:
         (
             "rbfp",
             ConfigError,
-            "slam = 'rbfp' is not known; did you mean 'rbpf'? Allowed: odometry, rbpf, truth, or",
+            "slam = 'rbfp' is not known; did you mean 'rbpf'? Allowed: graph, odometry, rbpf, truth, or",
         ),
         ("no_such_module:X", ConfigError, "slam = 'no_such_module:X': there is no module 'no_such_module'"),
         ("tests.slam.ray_mapper:RayMaper", ConfigError, "has no 'RayMaper'; did you mean 'RayMapper'?"),

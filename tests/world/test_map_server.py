@@ -82,6 +82,12 @@ def test_the_savers_grey_is_unknown_even_below_a_free_thresh_of_a_quarter(tmp_pa
     assert load_map(write(tmp_path, saved, free_thresh=0.25)).occupancy.tolist() == [[100, -1, 0]]
     retouched = pgm(np.array([[0, 205, 254, 230]]))
     assert load_map(write(tmp_path, retouched, free_thresh=0.25)).occupancy.tolist() == [[100, -1, 0, 0]]
+    white = np.full((10, 20), 205)
+    white[2:6, 2:9], white[1, 2:9], white[4, 4] = 255, 0, 230
+    grid = load_map(write(tmp_path, pgm(white), free_thresh=0.25)).occupancy[::-1]
+    assert (grid == -1).sum() == 10 * 20 - 5 * 7 and grid[4, 4] == 0 and grid[3, 3] == 0
+    shades = np.tile(np.arange(196, 256), (60, 1))
+    assert (load_map(write(tmp_path, pgm(shades), free_thresh=0.25)).occupancy == 0).mean() > 0.9
     continuous = pgm(np.array([[0, 205, 240]]))
     assert load_map(write(tmp_path, continuous, free_thresh=0.25)).occupancy.tolist() == [[100, 0, 0]]
 

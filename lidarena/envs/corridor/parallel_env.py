@@ -26,6 +26,7 @@ from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions, modern_keywords
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.infos import Info, of_world
+from lidarena.envs.seeds import checked_seed
 from lidarena.world.floorplan import Floorplan
 
 __all__ = ["CorridorEnv", "agent_name", "env", "parallel_env", "raw_env"]
@@ -191,11 +192,16 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
 
     def observation_space(self, agent: str) -> gym.Space[Any]:
         """Of an agent; always the same object."""
-        return self._observation_spaces[agent]
+        return self._observation_spaces[self._known(agent)]
 
     def action_space(self, agent: str) -> gym.Space[Any]:
         """Of an agent; always the same object."""
-        return self._action_spaces[agent]
+        return self._action_spaces[self._known(agent)]
+
+    def _known(self, agent: str) -> str:
+        if agent not in self._numbers:
+            raise ConfigError(f"there is no agent {agent!r}{suggest(str(agent), self.possible_agents)}")
+        return agent
 
     @property
     def floorplan(self) -> Floorplan:
@@ -208,11 +214,20 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         return self.episodes.options
 
     def reset(
-        self, seed: int | None = None, options: dict[str, Any] | None = None
+        self, seed: int | np.integer[Any] | None = None, options: dict[str, Any] | None = None
     ) -> tuple[dict[str, NDArray[np.float32]], dict[str, Info]]:
-        """Begin an episode."""
-        if seed is not None or self._generator is None:
-            self._generator = seeding.np_random(seed)[0]
+        """Begin an episode.
+
+        Args:
+            seed: None goes on with the generator that there is.
+            options: There are none; whatever stands here is passed over, as PettingZoo's own tests ask for.
+
+        Raises:
+            ConfigError: A seed that is no whole number of at least 0.
+        """
+        number = checked_seed(seed)
+        if number is not None or self._generator is None:
+            self._generator = seeding.np_random(number)[0]
         self.episodes.reset([0], [self._generator])
         self.agents = list(self.possible_agents)
         return self._observations(self.agents), self._infos(self.agents)

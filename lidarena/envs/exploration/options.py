@@ -6,6 +6,8 @@ from dataclasses import dataclass, replace
 from typing import Any, TypedDict
 from warnings import warn
 
+import numpy as np
+
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, MapError
 from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
@@ -95,7 +97,8 @@ class ExplorationOptions:
             weights in place of the completeness, or ``"map"`` (a dictionary with an egocentric picture of the map); or
             one's own, see ``lidarena.envs.observers``.
         action: ``"discrete"`` (DA-SLAM's three) or ``"continuous"``.
-        slam: ``"rbpf"`` runs the particle filter, ``"odometry"`` maps with the pose that the odometry adds up to,
+        slam: ``"rbpf"`` runs the particle filter, ``"graph"`` fits a graph of poses (see
+            ``lidarena.slam.graph.estimator``), ``"odometry"`` maps with the pose that the odometry adds up to,
             ``"truth"`` with the true one. Or an estimator of one's own: ``"module:callable"``, a class or function (see
             ``lidarena.slam.estimator``). With options: a dictionary of them and of ``name``.
         particles: Of the particle filter.
@@ -146,6 +149,9 @@ class ExplorationOptions:
             MapError: A start that is neither a pose, ``"random"`` nor None.
         """
         keywords = modern_keywords(keywords)
+        start = keywords.get("start")
+        if start is not None and not isinstance(start, str):
+            keywords["start"] = _pose_of(start)
         if keywords.get("reward") == "d_optimality" and "observation" not in keywords:
             words = "observation = 'da_slam' tells the completeness whatever the reward; name it, or 'da_slam_entropy'"
             warn(f"{words}, which reward = 'd_optimality' used to give", DeprecationWarning, stacklevel=3)
@@ -166,8 +172,6 @@ class ExplorationOptions:
         choose_observer(self.observation, OBSERVATIONS)
         if isinstance(self.start, str) and self.start != "random":
             raise MapError(f"start = {self.start!r} must be a pose (x, y, theta), 'random' or None")
-        if self.start is not None and not isinstance(self.start, str):
-            _check_pose(self.start)
         single = isinstance(self.map, str | Floorplan) or callable(self.map)
         if not single and (not isinstance(self.map, Sequence) or not len(self.map)):
             raise ConfigError(f"map = {self.map!r} must be a floor plan's name, file or generator, or a list of them")
@@ -231,6 +235,15 @@ def keywords_of_0_1(keywords: Mapping[str, Any]) -> dict[str, Any]:
     return modern
 
 
-def _check_pose(start: Any) -> None:
-    if not isinstance(start, Sequence) or len(start) != 3 or not all(isinstance(v, int | float) for v in start):
-        raise MapError(f"start = {start!r} must be a pose (x, y, theta), 'random' or None")
+def _pose_of(start: Any) -> Pose:
+    """A start as plain numbers, given as any sequence of three, NumPy's arrays too.
+
+    Raises:
+        MapError: It is no pose.
+    """
+    if isinstance(start, Sequence | np.ndarray) and len(start) == 3:
+        x, y, theta = start
+        if all(isinstance(v, int | float | np.integer | np.floating) for v in (x, y, theta)):
+            return float(x), float(y), float(theta)
+    count = f"; it has {len(start)} numbers" if isinstance(start, Sequence | np.ndarray) else ""
+    raise MapError(f"start = {start!r} must be a pose (x, y, theta), 'random' or None{count}")

@@ -22,6 +22,8 @@ _POINTS = 60
 """Points of a scan in the correlative search."""
 _ALIGNED = 180
 """Points of a scan that are aligned, about."""
+_STILL_WINDOW, _STANDS_STILL = 0.05, 0.85
+"""Where the wheels stand still, a match is looked for within the first [m]; below the second it is no proof of it."""
 _FEWEST_POINTS = 10
 """Scans of fewer points are not matched."""
 
@@ -59,6 +61,7 @@ class FrontEnd:
         keyframes: Which scans are keyframes.
         information: Of each keyframe, how surely its match holds it where it is: upper triangle (6,) of the normal
             equations, in the frame of the poses.
+        scores: How well each scan fitted, 0 to 1.
         held: Whether a scan's match was not believed, so that the wheels alone tell its pose.
     """
 
@@ -67,6 +70,7 @@ class FrontEnd:
     poses: list[Floats] = field(default_factory=list)
     keyframes: list[int] = field(default_factory=list)
     information: list[Floats] = field(default_factory=list)
+    scores: list[float] = field(default_factory=list)
     held: list[bool] = field(default_factory=list)
 
     def __post_init__(self) -> None:
@@ -107,6 +111,7 @@ class FrontEnd:
         pose[2] = wrapped(pose[2])
         self.odometry = odometry
         self.poses.append(pose)
+        self.scores.append(score)
         self.held.append(score < self.parameters.lost_score)
         return self._keep(points)
 
@@ -123,6 +128,11 @@ class FrontEnd:
             return guess, 0.0
         spread, window = _believed(motion, unsure)
         found = self._search(slot, guess, window, spread)
+        if window[0] <= _STILL_WINDOW and found[3] < _STANDS_STILL:  # wheels that hang tell that nothing moves
+            loose, around = _believed(motion, unsure=True)
+            moved = self._search(slot, compose(self.poses[-1], self._told(self.odometry, unsure=True)), around, loose)
+            if moved[3] > found[3] + 0.03:
+                found, spread = moved, loose
         if found[3] < self.parameters.low_score:
             wider = np.array([max(0.5, 2.0 * spread[0]), max(0.6, 3.0 * spread[1])])
             wide = self._search(slot, guess, wider, spread)
@@ -186,5 +196,5 @@ def _believed(motion: Floats, unsure: bool) -> tuple[Floats, Floats]:
         return np.array([0.2, 0.3]), np.array([0.5, 0.6])
     spread = np.array(motion_spread(motion))
     if math.hypot(motion[0], motion[1]) < 1e-3 and abs(motion[2]) < 1e-3:
-        return spread, np.array([0.05, 0.02])
+        return spread, np.array([_STILL_WINDOW, 0.02])
     return spread, np.array([max(0.1, min(2.0 * spread[0], 0.3)), max(0.03, min(2.0 * spread[1], 0.6))])

@@ -4,8 +4,8 @@ from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import coo_matrix
-from scipy.sparse.linalg import splu
+from scipy.sparse import coo_matrix, csc_matrix
+from scipy.sparse.linalg import SuperLU, splu
 
 from lidarena.slam.planar import between, wrapped
 
@@ -63,6 +63,26 @@ def optimized(poses: Floats, edges: Edges, rounds: int = 5) -> Floats:
 
 def _gauss_newton_step(poses: Floats, edges: Edges) -> Floats:
     """(K, 3) the step that the linearised edges ask for."""
+    matrix, gradient = normal_equations(poses, edges)
+    step: Floats = _factorized(matrix).solve(-gradient.ravel()).reshape(-1, 3)
+    return step
+
+
+def marginal(poses: Floats, edges: Edges, node: int) -> Floats:
+    """(3, 3) covariance of one pose, given all edges and that the first pose is where it is [m², m rad, rad²]."""
+    matrix, _ = normal_equations(poses, edges)
+    unit = np.zeros((matrix.shape[0], 3))
+    unit[3 * node + np.arange(3), np.arange(3)] = 1.0
+    block: Floats = _factorized(matrix).solve(unit)[3 * node : 3 * node + 3]
+    return 0.5 * (block + block.T)
+
+
+def _factorized(matrix: csc_matrix) -> SuperLU:
+    return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+
+
+def normal_equations(poses: Floats, edges: Edges) -> tuple[csc_matrix, Floats]:
+    """Information matrix (3 K, 3 K) of poses that edges tie to each other and to the first, and gradient (K, 3)."""
     i, j = edges.pairs[:, 0], edges.pairs[:, 1]
     error, moved = residuals(poses, edges), between(poses[i], poses[j])
     information = edges.information * belief(poses, edges)[:, None, None]
@@ -92,6 +112,4 @@ def _gauss_newton_step(poses: Floats, edges: Edges) -> Floats:
         ),
         shape=(size, size),
     ).tocsc()
-    solver = splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
-    step: Floats = solver.solve(-gradient.ravel()).reshape(-1, 3)
-    return step
+    return matrix, gradient

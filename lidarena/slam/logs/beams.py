@@ -19,6 +19,8 @@ _SAME_SURFACE = 0.3
 """Neighbouring ranges that differ by less are interpolated between [m]."""
 _NOT_METRES = 100.0
 """No building has half of its walls farther from a laser than this [m]."""
+_USABLE, _MOSTLY = 20.0, 0.5
+"""Ranges beyond the first [m] are not used for mapping; where so large a share is, something is odd."""
 _FARTHEST = 1e5
 """Larger numbers are no ranges in any unit."""
 _MAX_BEAMS = 20_000
@@ -89,8 +91,15 @@ def bring_together(
         row[:] = sorted_out if layout.like(aim) else _resampled(sorted_out, layout, aim, limit)
     if not np.any((together > 0.0) & (together < limit)):
         raise LogError(f"{name} has no scan with a single return below {limit:g} m; nothing can be mapped")
-    notes = () if aim is main else (_told(kinds, aim),)
-    return Beams(together, aim.angles, limit, notes)
+    notes = [] if aim is main else [_told(kinds, aim)]
+    measured = together[(together > 0.0) & (together < limit)]
+    far = float(np.mean(measured > _USABLE))
+    if far > _MOSTLY:
+        notes.append(
+            f"{far:.0%} of the returns are farther away than {_USABLE:g} m, more than is used for mapping; if the "
+            "ranges are in no metres, say so (--range-unit)"
+        )
+    return Beams(together, aim.angles, limit, tuple(notes))
 
 
 def _told(kinds: Counter[BeamLayout], aim: BeamLayout) -> str:

@@ -13,7 +13,7 @@ from lidarena.slam.logs.posegraph_file import save_g2o
 from lidarena.slam.logs.recorded_log import RecordedLog
 from lidarena.slam.logs.relations import RelationErrors
 from lidarena.slam.logs.replay_picture import draw_map
-from lidarena.slam.logs.results_folder import write_folder
+from lidarena.slam.logs.results_folder import replace_results
 from lidarena.slam.logs.trajectory import save_kitti, save_tum
 from lidarena.world.map_server import save_map
 
@@ -34,7 +34,7 @@ MAP_FILES = (
 def save_log_map(
     folder: str | os.PathLike[str], log: RecordedLog, result: LogMap, errors: RelationErrors | None = None
 ) -> Path | None:
-    """Write ``MAP_FILES`` as `write_folder` does, which says what is returned and raised.
+    """Write ``MAP_FILES`` as `replace_results` does, which says what is returned and raised.
 
     Args:
         folder: Where to.
@@ -52,7 +52,7 @@ def save_log_map(
         write_figure(there / "picture.png", picture)
         write_text(there / "results.json", json.dumps(map_results(log, result, errors), indent=2) + "\n")
 
-    return write_folder(folder, MAP_FILES, fill)
+    return replace_results(folder, MAP_FILES, fill)
 
 
 def draw_loops(log: RecordedLog, result: LogMap) -> "Figure":

@@ -8,11 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.graph.mapper import Loop, MapParameters, Mapper, PoseGraph
+from lidarena.slam.logs.bridges import unbridged, unsure_scans
 from lidarena.slam.logs.carmen import RecordedLog
 from lidarena.slam.logs.mount_check import checked_mount
-from lidarena.slam.logs.replay import trace_map
+from lidarena.slam.logs.traced_map import trace_map
 from lidarena.slam.logs.trajectory import Trajectory, in_order, spread_correction
 from lidarena.slam.planar import compose, inverse
+from lidarena.slam.rbpf.likelihood_field import CELL
 from lidarena.world.map_server import OccupancyMap
 
 Progress = Callable[[int, int], None]
@@ -44,7 +46,12 @@ class LogMap:
     seconds: float
 
 
-def map_log(log: RecordedLog, parameters: MapParameters | None = None, progress: Progress | None = None) -> LogMap:
+def map_log(
+    log: RecordedLog,
+    parameters: MapParameters | None = None,
+    progress: Progress | None = None,
+    resolution: float = CELL,
+) -> LogMap:
     """Map a recorded log, on one core; the same log gives the same bits.
 
     The map and the trajectory are in the frame of the log's odometry at its first scan.
@@ -53,13 +60,14 @@ def map_log(log: RecordedLog, parameters: MapParameters | None = None, progress:
         log: As `lidarena.slam.logs.carmen.read_log` gives it.
         parameters: Settings.
         progress: Told now and then how far it is.
+        resolution: Side of a cell of the map [m].
 
     Raises:
         EstimatorError: The beams are not evenly spaced.
         MapError: The robot went farther than any map may reach.
     """
     began = time.process_time()
-    unsure = _unsure_scans(log)
+    unsure = unsure_scans(log)
     mapper, total = Mapper(log.angles, log.max_range, log.mount, parameters), len(log.scan_readings)
     for k, reading in enumerate(log.scan_readings):
         mapper.add(float(log.times[reading]), log.odometry[reading], log.ranges[k], bool(unsure[k]))
@@ -70,21 +78,14 @@ def map_log(log: RecordedLog, parameters: MapParameters | None = None, progress:
     mount, doubt = checked_mount(log.mount, log.odometry[log.scan_readings], laser)
     robot = result.poses if doubt is None else compose(laser, inverse(mount))
     seconds = time.process_time() - began
+    doubts = [*result.doubts, *unbridged(log, unsure, mapper.front.scores), *([] if doubt is None else [doubt])]
     return LogMap(
         trajectory=in_order(log.times, spread_correction(log.odometry, log.scan_readings, robot)),
         readings=log.scan_readings[graph.scans],
         poses=graph.nodes,
-        map=trace_map(log, graph.scans, graph.nodes),
+        map=trace_map(log, graph.scans, graph.nodes, resolution=resolution),
         loops=result.loops,
         graph=graph,
-        doubts=result.doubts + ([] if doubt is None else [doubt]),
+        doubts=doubts,
         seconds=seconds,
     )
-
-
-def _unsure_scans(log: RecordedLog) -> NDArray[np.bool_]:
-    """(S,) whether the wheels do not tell the motion from the scan before to a scan."""
-    if not len(log.unsure):
-        return np.zeros(len(log.scan_readings), np.bool_)
-    so_far = np.cumsum(log.unsure)[log.scan_readings]
-    return np.diff(so_far, prepend=so_far[:1]) > 0

@@ -14,6 +14,8 @@ _STEP, _TURN = 1.0, 1.5
 """Motions from one reading to the next that are believed whatever the clock says [m, rad]."""
 _ZERO_STEP = 0.3
 """A reading at exactly (0, 0, 0) is believed if the one before is this near [m, rad]."""
+_MOST_WILD = 0.05
+"""With a larger share of motions that no robot can drive, none is believed."""
 _LONGEST_OUTLIER = 20
 """So many readings may be wrong until the odometry goes on where it was."""
 
@@ -43,6 +45,13 @@ def checked_odometry(times: NDArray[np.float64], poses: NDArray[np.float64]) -> 
         unsure[1:] = True
         note = "the odometry says that the robot never moved; its way is found by scan matching alone"
         return CheckedOdometry(poses, unsure, (note,))
+    wild = int(np.sum(_implausible(times, poses)))
+    if wild > _MOST_WILD * len(poses):
+        note = (
+            f"{wild:,} of {len(poses) - 1:,} motions of the odometry are such as no robot can drive (is it in metres "
+            "and radians?); it is left out, and the way is found by scan matching alone"
+        )
+        return CheckedOdometry(np.tile(poses[:1], (len(poses), 1)), np.arange(len(poses)) > 0, (note,))
     mended, outliers = _without_outliers(times, poses)
     jumps = np.flatnonzero(_implausible(times, mended)) + 1
     if len(jumps):

@@ -26,7 +26,8 @@ def read_recording(path: str | os.PathLike[str], options: LogOptions | None = No
 
 def _is_bag(path: Path) -> bool:
     if path.is_dir():
-        return (path / "metadata.yaml").exists()
+        # a recorder that was killed leaves none of the metadata
+        return (path / "metadata.yaml").exists() or any(one.suffix in _BAG_ENDINGS for one in path.iterdir())
     try:
         with path.open("rb") as stream:
             beginning = stream.read(16)

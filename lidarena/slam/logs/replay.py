@@ -9,10 +9,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
+from lidarena.slam.logs.attempts import ALONE, Attempt, Spread, choose_attempt
 from lidarena.slam.logs.calibration import OdometryCalibration, calibrated, fit_calibration
 from lidarena.slam.logs.carmen import LogError, RecordedLog
+from lidarena.slam.logs.traced_map import beam_directions, informative_ranges, laser_odometry, traced
 from lidarena.slam.logs.trajectory import Trajectory, in_order, spread_correction
-from lidarena.slam.occupancy import empty_maps, trace_scan
 from lidarena.slam.planar import between, compose, inverse
 from lidarena.slam.rbpf.growth import enlarged, tiles_missing
 from lidarena.slam.rbpf.likelihood_field import CELL, TILE
@@ -20,7 +21,6 @@ from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters
 from lidarena.slam.rbpf.scan_matching import MatcherParameters
 from lidarena.slam.rbpf.scan_points import points_for
-from lidarena.slam.scan_outline import empty_outlines
 from lidarena.world.extent import check_extent
 from lidarena.world.map_server import OccupancyMap
 
@@ -29,8 +29,6 @@ _CALIBRATING = 5
 """Particles of the run that calibrates: it needs motions from scan to scan, and no loop to close."""
 _MARGIN, _GROWTH = 2.0, 10.0
 """The grid is enlarged when a scan could end nearer to its border than the one, and then by so much more [m]."""
-_ENTER = np.int64(1)
-_OCCUPIED = 65
 
 Progress = Callable[[int, int], None]
 """Called with the scans that are done and the scans of the log."""
@@ -58,8 +56,8 @@ class ReplayParameters:
         jump_beams: Hits on one surface are at most this many beam spacings apart.
         normal_beams: A wall's normal is fitted over at least this many beam spacings to both sides.
         calibrate: Whether a first run with a few particles finds out what the wheels get wrong all along.
-        attempts: Independent runs of the filter, of which the one with the sharpest map counts: with 30 particles one
-            run in some ten to twenty loses its way in a fast turn or closes a loop beside the truth.
+        attempts: Independent runs of the filter, of which the one whose scans agree best on a map counts: with 30
+            particles one run in some ten to twenty loses its way in a fast turn or closes a loop beside the truth.
         filter: The filter's. Its ``history`` is always the whole log, and its ``points`` follow the two above.
     """
 
@@ -82,6 +80,8 @@ class Replay:
         map: The occupancy grid of all processed scans.
         calibration: What was found out about the wheels.
         seconds: Processor time of the filter in all its runs, without what it took to compile.
+        evidence: How well each attempt's scans agree on a map, see ``TracedMap``; the largest was taken.
+        spread: How far the other attempts are from it, see ``attempts.Spread``.
     """
 
     trajectory: Trajectory
@@ -90,6 +90,8 @@ class Replay:
     map: OccupancyMap
     calibration: OdometryCalibration
     seconds: float
+    evidence: tuple[float, ...] = ()
+    spread: Spread = ALONE
 
     @property
     def updates_per_second(self) -> float:
@@ -136,36 +138,24 @@ def replay(
         run = _Run(log, odometry[log.scan_readings], particles, (seed, attempt + 1), settings)
         run.forward(progress, first + attempt, passes)
         scans, poses = run.past()
-        found.append((trace_map(log, scans, poses, settings), scans, poses))
+        made = traced(log, scans, poses, settings.usable_range)
+        path = spread_correction(odometry, log.scan_readings[scans], poses)[log.scan_readings]
+        found.append(Attempt(scans, poses, made, path))
         seconds += run.seconds
-    # a path that came back beside the truth draws its walls twice
-    grid, scans, poses = min(found, key=lambda each: int(np.sum(each[0].occupancy >= _OCCUPIED)))
+    best, spread = choose_attempt(found)
+    grid, scans, poses = found[best].made.grid, found[best].scans, found[best].poses
     readings = log.scan_readings[scans]
-    spread = compose(spread_correction(odometry, readings, poses), inverse(log.mount))
+    corrected = compose(spread_correction(odometry, readings, poses), inverse(log.mount))
     return Replay(
-        trajectory=in_order(log.times, spread),
+        trajectory=in_order(log.times, corrected),
         readings=readings,
         poses=poses,
         map=grid,
         calibration=calibration,
         seconds=seconds,
+        evidence=tuple(each.made.evidence for each in found),
+        spread=spread,
     )
-
-
-def informative_ranges(log: RecordedLog) -> NDArray[np.float32]:
-    """Ranges (S, B) in which a beam without return is 0, which says nothing: glass returns none either."""
-    limit = log.max_range * (1.0 - 1e-4)
-    return np.where(log.ranges < limit, log.ranges, np.float32(0.0)).astype(np.float32)
-
-
-def laser_odometry(log: RecordedLog) -> NDArray[np.float64]:
-    """(R, 3) where the laser is by the wheels alone."""
-    return compose(log.odometry, np.broadcast_to(log.mount, log.odometry.shape))
-
-
-def beam_directions(log: RecordedLog) -> NDArray[np.float64]:
-    """(2, B) cos and sin of the beams' angles."""
-    return np.stack([np.cos(log.angles), np.sin(log.angles)])
 
 
 class _Run:
@@ -244,40 +234,3 @@ class _Run:
             poses[node] = state.node_poses[0, node, particle]
             particle = int(state.node_parents[0, node, particle])
         return np.array(self.processed, np.int64), poses
-
-
-def trace_map(
-    log: RecordedLog, scans: NDArray[np.int64], poses: NDArray[np.float64], parameters: ReplayParameters | None = None
-) -> OccupancyMap:
-    """Trace scans into an occupancy grid, cut to what is known.
-
-    Args:
-        log: Where they are from.
-        scans: (K,) which scans.
-        poses: (K, 3) where the laser was.
-        parameters: Settings.
-
-    Raises:
-        MapError: They are too far apart for a map.
-    """
-    reach = (parameters or ReplayParameters()).usable_range
-    ranges, directions = informative_ranges(log)[scans], beam_directions(log)
-    low = CELL * np.floor((poses[:, :2].min(axis=0) - reach) / CELL - 1.0)
-    columns, rows = (int(n) for n in np.ceil((poses[:, :2].max(axis=0) + reach - low) / CELL) + 1)
-    check_extent(f"the map of log {log.name!r}", rows, columns, CELL)
-    maps = empty_maps(1, np.zeros((1, rows, columns), np.uint8))
-    maps.origin[0] = low
-    outlines = empty_outlines(1, rows, len(log.angles), reach, CELL)
-    for pose, scan in zip(poses, ranges, strict=True):
-        trace_scan(maps, 0, CELL, pose, scan, directions, reach, _ENTER, outlines, 0)
-    return _cropped(maps.occupancy[0], low)
-
-
-def _cropped(grid: NDArray[np.int8], origin: NDArray[np.float64]) -> OccupancyMap:
-    """Cut off the unknown borders of a grid except one cell; an unknown grid becomes one unknown cell."""
-    rows, columns = np.flatnonzero((grid >= 0).any(axis=1)), np.flatnonzero((grid >= 0).any(axis=0))
-    if not len(rows):
-        return OccupancyMap(np.full((1, 1), -1, np.int8), CELL, (float(origin[0]), float(origin[1]), 0.0))
-    bottom, left = max(rows[0] - 1, 0), max(columns[0] - 1, 0)
-    cut = grid[bottom : rows[-1] + 2, left : columns[-1] + 2]
-    return OccupancyMap(cut.copy(), CELL, (float(origin[0] + left * CELL), float(origin[1] + bottom * CELL), 0.0))

@@ -13,7 +13,7 @@ from lidarena.slam.logs.carmen import RecordedLog
 from lidarena.slam.logs.relations import RelationErrors
 from lidarena.slam.logs.replay import Replay
 from lidarena.slam.logs.replay_picture import draw_replay
-from lidarena.slam.logs.results_folder import write_folder
+from lidarena.slam.logs.results_folder import replace_results
 from lidarena.slam.logs.trajectory import save_tum
 from lidarena.world.map_server import save_map
 
@@ -23,7 +23,7 @@ FILES = ("map.yaml", "map.pgm", "trajectory.tum", "picture.png", "results.json")
 def save_replay(
     folder: str | os.PathLike[str], log: RecordedLog, result: Replay, errors: RelationErrors | None = None
 ) -> Path | None:
-    """Write ``FILES`` as `write_folder` does, which says what is returned and raised.
+    """Write ``FILES`` as `replace_results` does, which says what is returned and raised.
 
     Args:
         folder: Where to; the one of an earlier replay is kept under another name.
@@ -39,7 +39,7 @@ def save_replay(
         write_figure(there / "picture.png", picture)
         write_text(there / "results.json", json.dumps(results(result, errors), indent=2) + "\n")
 
-    return write_folder(folder, FILES, fill)
+    return replace_results(folder, FILES, fill)
 
 
 def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, Any]:
@@ -50,6 +50,8 @@ def results(result: Replay, errors: RelationErrors | None = None) -> dict[str, A
         "relations": len(errors.translation) if errors else 0,
         "scan_updates": len(result.readings),
         "updates_per_second": round(result.updates_per_second, 1),
+        "evidence_of_attempts": [round(each, 1) for each in result.evidence],
+        "spread_of_attempts_m": {"nearest": result.spread.nearest, "farthest": result.spread.farthest},
     }
 
 

@@ -6,7 +6,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.logs.carmen import RecordedLog
-from lidarena.slam.logs.replay import Replay, laser_odometry, trace_map
+from lidarena.slam.logs.replay import Replay
+from lidarena.slam.logs.traced_map import laser_odometry, trace_map
 from lidarena.world.map_server import OccupancyMap
 
 if TYPE_CHECKING:

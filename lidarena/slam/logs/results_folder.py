@@ -29,7 +29,9 @@ def check_folder(folder: str | os.PathLike[str], files: Collection[str]) -> None
         )
 
 
-def write_folder(folder: str | os.PathLike[str], files: Collection[str], fill: Callable[[Path], None]) -> Path | None:
+def replace_results(
+    folder: str | os.PathLike[str], files: Collection[str], fill: Callable[[Path], None]
+) -> Path | None:
     """Write a folder of results; earlier ones of the same name move to ``folder.1``, ``folder.2`` and so on.
 
     Args:

@@ -5,7 +5,6 @@ They are read by the ``rosbags`` library, without ROS.
 
 import math
 import os
-import struct
 from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -16,6 +15,7 @@ from numpy.typing import NDArray
 from lidarena.base.errors import LidarenaError, suggest
 from lidarena.slam.logs.assembly import Assembly, RawScan
 from lidarena.slam.logs.beams import BeamLayout
+from lidarena.slam.logs.cut_bags import read_cut_bag
 from lidarena.slam.logs.recorded_log import LogError, LogOptions, RecordedLog
 from lidarena.slam.logs.tf_tree import TransformTree
 from lidarena.slam.logs.trajectory import interpolated
@@ -62,7 +62,7 @@ class _Messages:
         self.where, self.options, self.assembly = where, options, Assembly()
         self.scans: list[tuple[float, RawScan, str]] = []
         self.odometry: list[tuple[float, float, float, float]] = []
-        self.robot_frame = ""
+        self.robot_frame, self.is_cut = "", False
         self.tree = TransformTree()
         self.scan_topic, self.odometry_topic = "", NO_ODOMETRY
         self.decode: Callable[[Any, str], Any] = lambda raw, kind: raw
@@ -132,10 +132,10 @@ class _Messages:
                     self.tree.add(
                         each.header.frame_id, each.child_frame_id, _seconds(each.header, stamp), _planar(each.transform)
                     )
-        except (ValueError, IndexError, struct.error, AttributeError, AssertionError, KeyError) as error:
-            if isinstance(error, LogError):
-                raise
-            if not self.options.skip_torn:
+        except LogError:
+            raise
+        except Exception as error:  # whatever the decoders raise on torn bytes
+            if not (self.options.skip_torn or self.is_cut):
                 raise LogError(
                     f"{self.where} has a torn message on {connection.topic} at {stamp * 1e-9:.3f} s; leave torn "
                     "messages out (--skip-torn)"
@@ -209,10 +209,25 @@ def _raw_messages(path: Path, where: str, messages: _Messages) -> Iterator[tuple
         if messages.scans and messages.options.keep_cut:
             messages.assembly.notes.append(f"{where} is damaged or cut off; what stands before that place is kept")
             return
+        if messages.options.keep_cut:
+            left = list(_left_of_cut(path, where, messages))
+            if left:
+                yield from left
+                return
         raise LogError(
             f"{where} is damaged, cut off or no rosbag ({reason[:120].rstrip('.')}); a whole .bag, .db3 or .mcap file "
             "or the folder of a rosbag 2 is needed ('rosbag reindex' mends a cut one)"
         ) from error
+
+
+def _left_of_cut(path: Path, where: str, messages: _Messages) -> Iterator[tuple[Any, int, bytes]]:
+    """The raw messages that a damaged bag still holds, of the topics that were chosen."""
+    cut = read_cut_bag(path, (SCAN, ODOMETRY, *TRANSFORMS))
+    if cut is None or not any(each.msgtype == SCAN and each.msgcount for each in cut.connections):
+        return
+    messages.assembly.notes.append(f"{where} is damaged or cut off; what can be read from its beginning on is kept")
+    messages.decode, messages.is_cut = cut.decode, True
+    yield from cut.chosen(each.topic for each in messages.choose(cut.connections))
 
 
 def _seconds(header: Any, stamp: int) -> float:

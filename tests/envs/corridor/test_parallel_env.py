@@ -265,3 +265,16 @@ def test_the_picture_shows_the_team(tmp_path):
     before = env.render()
     drive(env, (0.5, 0.5), 5)
     assert before.ndim == 3 and before.dtype == np.uint8 and (before != env.render()).any()
+
+
+def test_seeds_and_agents_are_numpys_too_or_refused_in_a_sentence():
+    env = make()
+    first = env.reset(seed=np.int64(3))[0]
+    again = env.reset(seed=3, options={"whatever": 1})[0]
+    assert all(np.array_equal(first[name], again[name]) for name in env.agents)
+    for seed in ("3", 1.0, -1, True):
+        with pytest.raises(ConfigError, match="must be a whole number of at least 0, or None"):
+            env.reset(seed=seed)
+    for space in (env.action_space, env.observation_space):
+        with pytest.raises(ConfigError, match=r"there is no agent 'robot0'; did you mean 'robot_0'\?"):
+            space("robot0")

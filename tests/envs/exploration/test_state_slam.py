@@ -73,7 +73,7 @@ def test_keywords_in_yaml_make_it() -> None:
     assert batch.step(np.zeros(2, np.int64))[0].shape == (2, 7)
 
 
-@pytest.mark.parametrize("slam", ["rbpf", "odometry", "truth", RayMapper])
+@pytest.mark.parametrize("slam", ["rbpf", "graph", "odometry", "truth", RayMapper])
 def test_it_is_drawn_and_told(slam: Any) -> None:
     env = ExplorationEnv(map="env1", slam=slam, render_mode="rgb_array")
     env.reset(seed=0)

@@ -1,8 +1,9 @@
 """Sparse optimisation: edges that agree are met exactly, and one that lies is left aside."""
 
 import numpy as np
+import pytest
 
-from lidarena.slam.graph.optimization import Edges, belief, joined, optimized, residuals
+from lidarena.slam.graph.optimization import Edges, belief, joined, marginal, optimized, residuals
 from lidarena.slam.planar import between
 
 SQUARE = np.array(
@@ -32,3 +33,22 @@ def test_a_lying_loop_is_left_aside() -> None:
     found = optimized(SQUARE, joined([CHAIN, lie]), 20)
     assert np.abs(found - SQUARE).max() < 0.05
     assert belief(found, lie)[0] < 0.01 and (belief(found, CHAIN) == 1.0).all()
+
+
+def test_marginal_covariances_add_up_along_a_chain() -> None:
+    """Poses on a line without turns: each step adds its covariance, and what a wrong heading does beyond it."""
+    line = np.column_stack([np.arange(5.0), np.zeros(5), np.zeros(5)])
+    edges = edges_of(line, [(k, k + 1) for k in range(4)])
+    for node in (1, 2, 4):
+        found = marginal(line, edges, node)
+        assert found[0, 0] == pytest.approx(0.01 * node, rel=1e-3)
+        assert found[2, 2] == pytest.approx(0.01 * node, rel=1e-3)
+        levers = np.arange(node)  # how far behind the last pose each heading was wrong, but for the step itself
+        assert found[1, 1] == pytest.approx(0.01 * node + 0.01 * np.sum(levers**2), rel=1e-3)
+
+
+def test_a_loop_makes_the_far_end_more_certain() -> None:
+    chain = edges_of(SQUARE, [(0, 1), (1, 2), (2, 3)])
+    loop = edges_of(SQUARE, [(0, 3)])
+    open_end, closed = marginal(SQUARE, chain, 3), marginal(SQUARE, joined([chain, loop]), 3)
+    assert np.linalg.eigvalsh(open_end - closed).min() > 0.0

@@ -1,6 +1,7 @@
 """What no robot can have driven is found and taken out; what it can have driven is left to the bit."""
 
 import numpy as np
+import pytest
 
 from lidarena.slam.logs.odometry_checks import checked_odometry
 from lidarena.slam.planar import between, compose
@@ -58,3 +59,15 @@ def test_a_robot_that_was_carried_about_is_likely_torn() -> None:
         poses[place:, :2] += (7.0, -3.0)
     found = checked_odometry(TIMES, poses)
     assert found.unsure.sum() == 5 and "2 more jumps" in found.notes[-1]
+
+
+@pytest.mark.parametrize("units", [(100.0, 100.0, 1.0), (1000.0, 1000.0, 1.0), (1.0, 1.0, 180.0 / np.pi)])
+def test_odometry_in_other_units_is_left_out_and_told(units: tuple[float, float, float]) -> None:
+    turns = np.cumsum(np.random.default_rng(0).normal(0.0, 0.2, 400))
+    way = np.column_stack([np.cumsum(0.1 * np.cos(turns)), np.cumsum(0.1 * np.sin(turns)), turns])
+    times = 0.2 * np.arange(400)
+    assert not checked_odometry(times, way).notes
+    checked = checked_odometry(times, way * units)
+    assert checked.unsure[1:].all() and not checked.unsure[0]
+    assert np.ptp(checked.poses, axis=0).max() == 0.0
+    assert "is it in metres and radians?" in checked.notes[0]

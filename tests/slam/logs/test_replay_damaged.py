@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 from lidarena.slam.logs.carmen import LogError, read_log
 from lidarena.slam.logs.relations import _nearest
-from lidarena.slam.logs.replay import beam_directions, informative_ranges, laser_odometry, trace_map
+from lidarena.slam.logs.traced_map import beam_directions, informative_ranges, laser_odometry, trace_map
 from lidarena.slam.logs.trajectory import Trajectory, load_tum, save_tum
 from lidarena.slam.planar import wrapped
 from tests.slam.drive import ring

@@ -4,7 +4,7 @@ import pytest
 
 from lidarena.base.errors import WriteError
 from lidarena.slam.logs.recorded_log import LogError
-from lidarena.slam.logs.results_folder import check_folder, write_folder
+from lidarena.slam.logs.results_folder import check_folder, replace_results
 
 FILES = ("map.pgm", "results.json")
 
@@ -24,7 +24,9 @@ def test_a_folder_with_other_peoples_files_is_refused(tmp_path: Path) -> None:
 
 def test_earlier_results_move_aside(tmp_path: Path) -> None:
     def write(text: str) -> Path | None:
-        return write_folder(tmp_path / "out", FILES, lambda folder: [(folder / n).write_text(text) for n in FILES][:0])
+        return replace_results(
+            tmp_path / "out", FILES, lambda folder: [(folder / n).write_text(text) for n in FILES][:0]
+        )
 
     assert [write(text) for text in "abc"] == [None, tmp_path / "out.1", tmp_path / "out.2"]
     assert [(tmp_path / name / FILES[0]).read_text() for name in ("out.1", "out.2", "out")] == ["a", "b", "c"]
@@ -38,6 +40,6 @@ def test_what_was_there_stays_where_writing_fails(tmp_path: Path) -> None:
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / FILES[1]).write_text("earlier")
     with pytest.raises(WriteError, match="full"):
-        write_folder(tmp_path / "out", FILES, fails)
+        replace_results(tmp_path / "out", FILES, fails)
     assert [(path.name, path.read_text()) for path in (tmp_path / "out").iterdir()] == [(FILES[1], "earlier")]
     assert [path.name for path in tmp_path.iterdir()] == ["out"]

@@ -119,6 +119,14 @@ def bag_of(
     return place
 
 
+def cut(place: Path, share: float) -> Path:
+    """Keep so much of a bag, from its beginning on."""
+    file = next(one for one in place.iterdir() if one.suffix in (".db3", ".mcap")) if place.is_dir() else place
+    data = file.read_bytes()
+    file.write_bytes(data[: int(share * len(data))])
+    return place
+
+
 @pytest.mark.parametrize("kind", FORMATS)
 @pytest.mark.parametrize(("odometry", "compressed"), [("/odom", False), ("/tf", False), ("/odom", True)])
 def test_a_bag_reads_as_what_was_written(tmp_path: Path, kind: str, odometry: str, compressed: bool) -> None:
@@ -184,10 +192,7 @@ def test_scans_that_are_all_infinite_are_refused(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", FORMATS)
 @pytest.mark.parametrize("share", [0.0, 0.01, 0.5, 0.99])
 def test_a_bag_that_was_cut_off_is_refused_in_one_sentence(tmp_path: Path, kind: str, share: float) -> None:
-    place = bag_of(tmp_path / f"a.{kind}", kind)
-    file = place if kind == "bag" else next(one for one in place.iterdir() if one.suffix in (".db3", ".mcap"))
-    data = file.read_bytes()
-    file.write_bytes(data[: int(share * len(data))])
+    place = cut(bag_of(tmp_path / f"a.{kind}", kind), share)
     try:
         log = read_recording(place)
     except LogError as refusal:
