@@ -85,7 +85,7 @@ class Vehicle:
         return motion_of(rotation_of(frames * self._motion[:3]), frames * self._motion[3:])
 
     def step(self, skip: int, mode: str) -> None:
-        """Compute the position ``skip`` frames on, or as far as the flight goes; after its end there is nothing to do."""
+        """Compute the position ``skip`` frames on, or as far as the flight goes; after its end nothing."""
         if self.frame == self.last_frame:
             self.drift = self.spent = 0.0
             return
