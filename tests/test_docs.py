@@ -26,8 +26,9 @@ def commands() -> list[tuple[str, str]]:
     """Every line of the program in a block without a language, with its page."""
     found = []
     for page, text in TEXTS.items():
-        for block in re.findall(r"```\n(.*?)```", text, re.DOTALL):
-            found += [(page, line.partition(" #")[0].strip()) for line in COMMAND.findall(block)]
+        for language, block in re.findall(r"^```(\w*)\n(.*?)^```", text, re.DOTALL | re.MULTILINE):
+            lines = COMMAND.findall(block) if not language else []
+            found += [(page, line.partition(" #")[0].strip()) for line in lines]
     return found
 
 
