@@ -4,6 +4,7 @@ from lidarena.envs.arena import ArenaEnv, BatchedArena
 from lidarena.envs.corridor import BatchedCorridor, CorridorCentralEnv
 from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import Family, Registration, register_all, register_family
+from lidarena.envs.workshop import BatchedWorkshop, WorkshopEnv
 from lidarena.envs.worker_threads import set_num_threads
 
 __all__ = [
@@ -11,10 +12,12 @@ __all__ = [
     "BatchedArena",
     "BatchedCorridor",
     "BatchedExploration",
+    "BatchedWorkshop",
     "CorridorCentralEnv",
     "ExplorationEnv",
     "Family",
     "Registration",
+    "WorkshopEnv",
     "register_all",
     "register_family",
     "set_num_threads",
