@@ -4,8 +4,8 @@ from lidarena.envs.arena import ArenaEnv, BatchedArena
 from lidarena.envs.corridor import BatchedCorridor, CorridorCentralEnv
 from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import Family, Registration, register_all, register_family
-from lidarena.envs.workshop import BatchedWorkshop, WorkshopEnv
 from lidarena.envs.worker_threads import set_num_threads
+from lidarena.envs.workshop import BatchedWorkshop, WorkshopEnv
 
 __all__ = [
     "ArenaEnv",

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv
+from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv, WorkshopEnv
 from lidarena.envs.arena.options import ArenaOptions
 from lidarena.envs.arena.rewards import REWARDS as ARENA
 from lidarena.envs.corridor.options import CorridorOptions
@@ -16,11 +16,14 @@ from lidarena.envs.corridor_v0 import CorridorEnv
 from lidarena.envs.exploration.options import OBSERVATIONS, ExplorationOptions
 from lidarena.envs.exploration.rewards import REWARDS as EXPLORATION
 from lidarena.envs.rewards import RewardTerms
+from lidarena.envs.workshop.options import WorkshopOptions
+from lidarena.envs.workshop.rewards import REWARDS as WORKSHOP
 
 DOCUMENTED: list[tuple[type[Any], type[Any], RewardTerms]] = [
     (ExplorationEnv, ExplorationOptions, EXPLORATION),
     (ArenaEnv, ArenaOptions, ARENA),
     (CorridorEnv, CorridorOptions, CORRIDOR),
+    (WorkshopEnv, WorkshopOptions, WORKSHOP),
 ]
 SECTIONS = ["Description", "Action space", "Observation space", "Rewards", "Starting state", "Episode end", "Info"]
 SECTIONS += ["Arguments", "References", "Version History"]
@@ -72,7 +75,7 @@ def test_the_central_environment_tells_where_it_differs_from_corridor_v0() -> No
     assert own.keys() == {field.name for field in fields(CorridorOptions)} - shared
 
 
-@pytest.mark.parametrize("environment", [ExplorationEnv, ArenaEnv, CorridorCentralEnv, CorridorEnv])
+@pytest.mark.parametrize("environment", [ExplorationEnv, ArenaEnv, CorridorCentralEnv, CorridorEnv, WorkshopEnv])
 def test_sections_stand_in_gymnasiums_order(environment: type[Any]) -> None:
     assert re.findall(r"^## (.*)$", inspect.getdoc(environment) or "", re.M) == SECTIONS
 

@@ -38,9 +38,7 @@ def allowed(task: TaskArrays, status: NDArray[np.int64]) -> NDArray[np.bool_]:
     return free
 
 
-def with_waiting(
-    free: NDArray[np.bool_], other_acts: NDArray[np.bool_], due: NDArray[np.bool_]
-) -> NDArray[np.bool_]:
+def with_waiting(free: NDArray[np.bool_], other_acts: NDArray[np.bool_], due: NDArray[np.bool_]) -> NDArray[np.bool_]:
     """The mask (worlds, n + 1) of an agent: what it may begin, and last whether it may wait.
 
     To wait is allowed while the other one is at something, or where there is nothing to begin.

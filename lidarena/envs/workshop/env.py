@@ -20,27 +20,27 @@ class WorkshopEnv(SingleWorld):
     ## Description
 
     The problem of Strassmair and Taylor, "Human Robot Collaboration in production environments": actions with a
-    precedence graph, locations and bounds on their durations are to be done by a deadline. A human and a robot share the
-    floor; both really walk on it, and keep a distance from each other, so that one in the other's way costs time. An
-    action may be begun once all that must come before it is done or under way; the work at its last location waits until
-    that is done. What is begun is carried out to its end. The human is simulated and chooses for itself; its durations
-    are log-normal and may break the bounds. A step lasts until the robot's next decision is due: when its action has
-    ended or, while it waits, when something happens.
+    precedence graph, locations and bounds on their durations are to be done by a deadline. A human and a robot share
+    the floor; both really walk on it, and keep a distance from each other, so that one in the other's way costs time.
+    An action may be begun once all that must come before it is done or under way; the work at its last location waits
+    until that is done. What is begun is carried out to its end. The human is simulated and chooses for itself; its
+    durations are log-normal and may break the bounds. A step lasts until the robot's next decision is due: when its
+    action has ended or, while it waits, when something happens.
 
     ## Action space
 
     ``Discrete(n + 1)`` for a task of n actions: number k begins action k, number n waits. ``action_masks()`` and
-    ``info["action_mask"]`` tell what is allowed; anything else stands for waiting and is counted in ``info["refused"]``.
+    ``info["action_mask"]`` tell what is allowed; anything else stands for waiting, and ``info["refused"]`` counts it.
 
     ## Observation space
 
     ``Box(-10, 10, (13 n + 14,), float32)``. For each action: whether it is open, under way by the robot, under way by
     the human, allowed for the robot, allowed for the human; the time until all that hangs on it is done over the
-    deadline; of the robot and then of the human the time of the ways / 20 s and the usual time of the work / 30 s, zeros
-    for who cannot do it; since when it is under way / 30 s, whether the work at its last location has begun, and how
-    many actions it waits for / 3. Of the whole: time over deadline; whether the human is idle, walks, waits, works, is
-    away; its pace (time over the usual) and how many actions it has shown it in / 5; the share of the actions that is
-    left, the longest chain of work that is left over the deadline, the distance between the two / 10 m, whether the
+    deadline; of the robot and then of the human the time of the ways / 20 s and the usual time of the work / 30 s,
+    zeros for who cannot do it; since when it is under way / 30 s, whether the work at its last location has begun, and
+    how many actions it waits for / 3. Of the whole: time over deadline; whether the human is idle, walks, waits, works,
+    is away; its pace (time over the usual) and how many actions it has shown it in / 5; the share of the actions that
+    is left, the longest chain of work that is left over the deadline, the distance between the two / 10 m, whether the
     robot is idle, the human's idle time over the deadline, whether the robot waits at a location. Or an observer of
     one's own, see ``lidarena.envs.observers``.
 
@@ -88,7 +88,7 @@ class WorkshopEnv(SingleWorld):
     | Name | Type | Default | Meaning |
     |------|------|---------|---------|
     | `task` | str, dict or task | `"pile"` | `"gearbox"`, `"cabinet"`, or a YAML file of one's own |
-    | `human` | str or human | `"free"` | or `"helpful"`, `"stubborn"`, `"slow"`, `"absent"`, `"mixture"`, or one's own |
+    | `human` | str or human | `"free"` | `"helpful"`, `"stubborn"`, `"slow"`, `"absent"`, `"mixture"`; one's own |
     | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: the task's |
     | `separation` | float | `0.4` | distance between the two that is kept [m] |
     | `wait_period` | float | `5.0` | who waits is asked again after this time at the latest [s] |

@@ -205,5 +205,3 @@ class WorkshopEpisodes:
         for name, array in self.arrays().items():
             array[...] = saved[name]
         self._rewards.look()
-
-

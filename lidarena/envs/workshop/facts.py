@@ -105,9 +105,7 @@ def functional_delay(task: TaskArrays, agent: NDArray[np.int64], begun: Floats, 
     return delay
 
 
-def bounds_broken(
-    task: TaskArrays, agent: NDArray[np.int64], worked: Floats, done: NDArray[np.bool_]
-) -> Floats:
+def bounds_broken(task: TaskArrays, agent: NDArray[np.int64], worked: Floats, done: NDArray[np.bool_]) -> Floats:
     """Share of the human's finished actions whose work took less or more than its bounds, (worlds,).
 
     Args:
@@ -121,5 +119,3 @@ def bounds_broken(
     outside = human & ((worked < low - 1e-9) | (worked > high + 1e-9))
     share: Floats = outside.sum(axis=1) / np.maximum(human.sum(axis=1), 1)
     return share
-
-

@@ -1,10 +1,10 @@
 """Simulated humans: how quickly they work, what they like to do next, when they rest or leave; and humans of one's own.
 
-    class Tidy:
-        def choose(self, info, rng):
-            return int(info["allowed_human"].nonzero()[0][0])   # a number of an action, or None to rest
+class Tidy:
+    def choose(self, info, rng):
+        return int(info["allowed_human"].nonzero()[0][0])   # a number of an action, or None to rest
 
-    env = gym.make("lidarena/Workshop-v0", human=Tidy)   # or human="my_module:Tidy", also in YAML
+env = gym.make("lidarena/Workshop-v0", human=Tidy)   # or human="my_module:Tidy", also in YAML
 """
 
 from collections.abc import Callable

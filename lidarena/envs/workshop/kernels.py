@@ -123,10 +123,10 @@ def is_allowed(task: TaskArrays, s: Workers, w: int, agent: int, action: int) ->
     """Whether an agent may choose an action: it can do it, and what must come before is done or under way."""
     if s.status[w, action] != OPEN or not task.capable[agent, action]:
         return False
+    clear = True
     for i in range(s.status.shape[1]):
-        if task.before[i, action] and s.status[w, i] == OPEN:
-            return False
-    return True
+        clear = clear and not (task.before[i, action] and s.status[w, i] == OPEN)
+    return clear
 
 
 @inlined
@@ -271,7 +271,7 @@ def _back_off(task: TaskArrays, grid: WalkGrid, place: Floats, other: Floats) ->
 
 @leaf
 def _steer(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, agent: int, wanted: Floats) -> float:
-    """Where an agent goes in the next tick, as a unit vector in ``wanted`` (2,); returns how far [m], 0 if it stands."""
+    """Where an agent goes in the next tick, a unit vector in ``wanted`` (2,); returns how far [m], 0 if it stands."""
     place, other = s.poses[w, agent], s.poses[w, 1 - agent]
     step = task.step[agent]
     apart = math.hypot(place[0] - other[0], place[1] - other[1])
@@ -331,8 +331,8 @@ def _advance_tick(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w:
 
 
 @leaf
-def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, ticks: int) -> None:
-    """Let time pass in which everybody does what they do: work goes on, and who has arrived begins."""
+def _measure(s: Workers, rules: Rules, w: int, ticks: int) -> None:
+    """Note who is idle, whether both are busy, and how near they are, for some ticks."""
     busy = 0
     for agent in range(2):
         phase = s.phase[w, agent]
@@ -344,6 +344,12 @@ def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, 
         s.together[w] += ticks * TICK
     apart = math.hypot(s.poses[w, 0, 0] - s.poses[w, 1, 0], s.poses[w, 0, 1] - s.poses[w, 1, 1])
     s.least_gap[w] = min(s.least_gap[w], apart - rules.touch)
+
+
+@leaf
+def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, ticks: int) -> None:
+    """Let time pass in which everybody does what they do: work goes on, and who has arrived begins."""
+    _measure(s, rules, w, ticks)
     s.ticks[w] += ticks
     for agent in range(2):
         phase = s.phase[w, agent]
@@ -351,7 +357,7 @@ def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, 
             s.left[w, agent] -= ticks * TICK
             if s.left[w, agent] <= 1e-9:
                 _finish(task, s, w, agent)
-        elif phase == WALKING or phase == WAITING:
+        elif phase in (WALKING, WAITING):
             field = _target(task, s, w, agent)
             dx, dy = grid.points[field, 0] - s.poses[w, agent, 0], grid.points[field, 1] - s.poses[w, agent, 1]
             if math.hypot(dx, dy) < 1e-6:
@@ -428,3 +434,35 @@ def advance(
                 account(task, grid, s, rules, w, ticks)
                 s.verdict[w] = _look(task, grid, s, rules, w)
         w = take_next(counter)
+
+
+@leaf
+def settle(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, near: NDArray[np.bool_]) -> None:
+    """Account for the tick by which pymunk has moved the two of some worlds."""
+    for w in range(near.shape[0]):
+        if near[w]:
+            account(task, grid, s, rules, w, 1)
+
+
+@leaf
+def take_decisions(
+    task: TaskArrays,
+    s: Workers,
+    rules: Rules,
+    agent: int,
+    choices: NDArray[np.int64],
+    asked: NDArray[np.bool_],
+    forced: bool,
+    refused: NDArray[np.bool_],
+) -> None:
+    """Begin what an agent chose, or let it wait; ``refused`` (worlds,) says where it has to; see ``decide``."""
+    count = s.status.shape[1]
+    for w in range(choices.shape[0]):
+        if not (asked[w] and s.due[w, agent]):
+            continue
+        choice = choices[w]
+        if choice < count and s.status[w, choice] == OPEN and (forced or is_allowed(task, s, w, agent, choice)):
+            begin(task, s, w, agent, choice)
+        else:
+            refused[w] = choice < count
+            rest(s, w, agent, rules.wait, False)

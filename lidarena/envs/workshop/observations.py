@@ -20,9 +20,7 @@ _WAY, _WORK = 20.0, 30.0
 
 
 @leaf
-def observe(
-    task: TaskArrays, grid: WalkGrid, s: Workers, deadline: float, me: int, out: NDArray[np.float32]
-) -> None:
+def observe(task: TaskArrays, grid: WalkGrid, s: Workers, deadline: float, me: int, out: NDArray[np.float32]) -> None:
     """Fill ``out`` (worlds, n · PER_ACTION + OF_ALL) with what agent ``me`` observes; see ``WorkshopEnv``."""
     count = s.status.shape[1]
     for w in range(out.shape[0]):

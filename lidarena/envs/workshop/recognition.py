@@ -22,6 +22,8 @@ NOISE = 0.15
 """Standard deviation of the observed position [m]."""
 _SURE = 0.75
 """Detour by which an action becomes e times less likely [m]."""
+_UNLIKELY = 1e-4
+"""No observation makes an action less likely than by this factor."""
 
 
 class Recognizer:
@@ -96,13 +98,18 @@ def estimate(
         y = s.poses[w, HUMAN, 1] + NOISE * normal(streams[w])
         total = 0.0
         for k in range(belief.shape[1]):
-            if belief[w, k] > 0.0:
-                field = task.field[task.stops[k, 0], HUMAN]
-                ahead = way_length(grid, field, x, y)
-                if s.phase[w, HUMAN] == WALKING:
-                    behind = np.hypot(x - s.origin[w, 0], y - s.origin[w, 1])
-                    ahead = max(ahead + behind - way_length(grid, field, s.origin[w, 0], s.origin[w, 1]), 0.0)
-                belief[w, k] = max(belief[w, k] * np.exp(-ahead / _SURE), 1e-9)
-                total += belief[w, k]
+            belief[w, k] *= _likelihood(task, grid, s, w, k, x, y)
+            total += belief[w, k]
         for k in range(belief.shape[1]):
             belief[w, k] /= total
+
+
+@leaf
+def _likelihood(task: TaskArrays, grid: WalkGrid, s: Workers, w: int, action: int, x: float, y: float) -> float:
+    """How well being at a place goes with being on the way to an action's first location, or there."""
+    field = task.field[task.stops[action, 0], HUMAN]
+    detour = way_length(grid, field, x, y)
+    if s.phase[w, HUMAN] == WALKING:
+        behind = np.hypot(x - s.origin[w, 0], y - s.origin[w, 1])
+        detour = max(detour + behind - way_length(grid, field, s.origin[w, 0], s.origin[w, 1]), 0.0)
+    return max(np.exp(-detour / _SURE), _UNLIKELY)

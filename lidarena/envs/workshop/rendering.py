@@ -110,7 +110,14 @@ def _schedule(core: "WorkshopCore", world: int) -> NDArray[np.uint8]:
     write(band, "deadline", late - 58, 2 * _LANE + 18, INK, 0.36)
     cv2.line(band, (_LEFT, 2 * _LANE + 6), (_SIDE - 12, 2 * _LANE + 6), GREY, 1)
     write(band, "0 s", _LEFT - 4, 2 * _LANE + 18, INK, 0.36)
-    write(band, "strong: works (number of the action), pale: walks, grey: waits, dark grey: away", 10, 2 * _LANE + 34, GREY, 0.36)
+    write(
+        band,
+        "strong: works (number of the action), pale: walks, grey: waits, dark grey: away",
+        10,
+        2 * _LANE + 34,
+        GREY,
+        0.36,
+    )
     return band
 
 

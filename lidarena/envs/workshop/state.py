@@ -1,33 +1,28 @@
 """The workshops themselves, batched: where everybody is and what is done; no spaces, rewards or episodes."""
 
-from typing import Any, cast
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.jit import leaf
 from lidarena.base.random_streams import seed_stream
+from lidarena.envs.worker_threads import on_threads
 from lidarena.envs.workshop.humans import EXTERNAL, choose_human, draw_traits
 from lidarena.envs.workshop.kernels import (
-    DECIDES,
     IDLE,
     NEAR,
     NOTHING,
-    OPEN,
     RUNS,
     Rules,
     Workers,
-    account,
     advance,
-    begin,
-    is_allowed,
-    rest,
+    settle,
+    take_decisions,
 )
 from lidarena.envs.workshop.options import PATIENCE, WorkshopOptions
-from lidarena.envs.workshop.task import HUMAN, ROBOT, TaskArrays, WorkshopTask
-from lidarena.envs.workshop.walking import TICK, WalkGrid
-from lidarena.envs.worker_threads import on_threads
+from lidarena.envs.workshop.task import HUMAN, ROBOT, WorkshopTask
+from lidarena.envs.workshop.walking import TICK
 from lidarena.world.robots import RobotSpec
 from lidarena.world.team_physics import TeamPhysics
 
@@ -149,40 +144,6 @@ class WorkshopCore:
             self.physics.furnish(world, self.task.plan)
 
 
-@leaf
-def settle(
-    task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, near: NDArray[np.bool_]
-) -> None:
-    """Account for the tick by which pymunk has moved the two of some worlds."""
-    for w in range(near.shape[0]):
-        if near[w]:
-            account(task, grid, s, rules, w, 1)
-
-
-@leaf
-def take_decisions(
-    task: TaskArrays,
-    s: Workers,
-    rules: Rules,
-    agent: int,
-    choices: NDArray[np.int64],
-    asked: NDArray[np.bool_],
-    forced: bool,
-    refused: NDArray[np.bool_],
-) -> None:
-    """Begin what an agent chose, or let it wait; ``refused`` (worlds,) says where it has to; see ``decide``."""
-    count = s.status.shape[1]
-    for w in range(choices.shape[0]):
-        if not (asked[w] and s.due[w, agent]):
-            continue
-        choice = choices[w]
-        if choice < count and s.status[w, choice] == OPEN and (forced or is_allowed(task, s, w, agent, choice)):
-            begin(task, s, w, agent, choice)
-        else:
-            refused[w] = choice < count
-            rest(s, w, agent, rules.wait, False)
-
-
 def _no_workers(worlds: int, count: int, poses: NDArray[np.float64]) -> Workers:
     """Worlds in which nothing has happened yet."""
     pair, each = (worlds, 2), (worlds, count)
@@ -223,8 +184,3 @@ def _no_workers(worlds: int, count: int, poses: NDArray[np.float64]) -> Workers:
         log=np.zeros((worlds, _LOG * count, 4)),
         logged=np.zeros(worlds, np.int64),
     )
-
-
-def decides(workers: Workers) -> NDArray[np.bool_]:
-    """(worlds,) where somebody has to decide."""
-    return cast(NDArray[np.bool_], workers.verdict == DECIDES)

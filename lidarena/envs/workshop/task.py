@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError, MapError
 from lidarena.envs.workshop.task_file import AGENTS, TaskConfig, middle, read_task
-from lidarena.envs.workshop.walking import TICK, WalkGrid, is_free, make_walk_grid, way_length
+from lidarena.envs.workshop.walking import TICK, is_free, make_walk_grid, way_length
 from lidarena.temporal import STN
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
@@ -210,7 +210,7 @@ def _floor(config: TaskConfig, name: str) -> Floorplan:
         raise MapError(f"the floor of task {name!r} has bounds {floor.bounds}, where x_min < x_max, y_min < y_max")
     boxes = [[[a, b], [c, b], [c, d], [a, d]] for a, b, c, d in floor.boxes]
     start = (*config.agents["robot"].home, 0.0)
-    walls = floor.walls or [[x0, y0, x1, y0], [x1, y0, x1, y1], [x1, y1, x0, y1], [x0, y1, x0, y0]]
+    walls = [[x0, y0, x1, y0], [x1, y0, x1, y1], [x1, y1, x0, y1], [x0, y1, x0, y0], *floor.walls]
     return Floorplan.from_shapes(name, (x0, y0, x1, y1), walls, boxes, start=start)  # type: ignore[arg-type]
 
 

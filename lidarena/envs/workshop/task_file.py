@@ -1,4 +1,4 @@
-"""What a task's YAML file holds: floor, locations, agents, actions, deadline and constraints; checked when it is read."""
+"""What a task's YAML file holds: floor, locations, agents, actions, deadline, constraints; checked when it is read."""
 
 import math
 from functools import cache
@@ -25,8 +25,8 @@ class FloorConfig(ConfigModel):
 
     Attributes:
         map: What :func:`lidarena.world.load.load_floorplan` takes, in place of the rest.
-        bounds: x_min, y_min, x_max, y_max [m].
-        walls: Centre lines x1, y1, x2, y2 [m], 0.1 m thick.
+        bounds: x_min, y_min, x_max, y_max; walls stand all around [m].
+        walls: Further ones: centre lines x1, y1, x2, y2 [m], 0.1 m thick.
         boxes: Solid rectangles x1, y1, x2, y2 [m]: tables, shelves, machines.
     """
 
@@ -143,6 +143,14 @@ class TaskConfig(ConfigModel):
         for name, place in self.locations.items():
             if isinstance(place, dict) and set(place) != set(AGENTS):
                 raise ValueError(f"the location {name!r} needs a point for each of human and robot, or one for both")
+        self._check_actions()
+        cycle = _cycle({name: action.after for name, action in self.actions.items()})
+        if cycle:
+            raise ValueError(f"the task graph has a cycle: {' → '.join(cycle)}; no order of these actions is possible")
+        self._check_constraints()
+        return self
+
+    def _check_actions(self) -> None:
         for name, action in self.actions.items():
             if "." in name:
                 raise ValueError(f"the action {name!r} must have no dot in its name")
@@ -154,11 +162,6 @@ class TaskConfig(ConfigModel):
                 if earlier not in self.actions:
                     wrong = f"the action {name!r} comes after {earlier!r}, which is no action"
                     raise ValueError(wrong + suggest(earlier, self.actions))
-        cycle = _cycle({name: action.after for name, action in self.actions.items()})
-        if cycle:
-            raise ValueError(f"the task graph has a cycle: {' → '.join(cycle)}; no order of these actions is possible")
-        self._check_constraints()
-        return self
 
     def _check_constraints(self) -> None:
         for constraint in self.constraints:

@@ -70,9 +70,7 @@ def cell_of(coordinate: float, origin: float, count: int) -> int:
 
 
 @kernel
-def _aim(
-    free: NDArray[np.bool_], ways: Floats, nearest: NDArray[np.int64], toward: NDArray[np.float32]
-) -> None:
+def _aim(free: NDArray[np.bool_], ways: Floats, nearest: NDArray[np.int64], toward: NDArray[np.float32]) -> None:
     """Fill ``toward`` (rows, columns, 2) with directions along falling ``ways`` (rows, columns), as far as is seen."""
     rows, columns = free.shape
     for r in range(rows):
@@ -109,8 +107,8 @@ def _sees(free: NDArray[np.bool_], r0: int, c0: int, r1: int, c1: int) -> bool:
     """Whether all cells on the line between two cells are free."""
     steps = 2 * max(abs(r1 - r0), abs(c1 - c0))
     for k in range(1, steps):
-        r = int(round(r0 + (r1 - r0) * k / steps))
-        c = int(round(c0 + (c1 - c0) * k / steps))
+        r = int(r0 + (r1 - r0) * k / steps + 0.5)
+        c = int(c0 + (c1 - c0) * k / steps + 0.5)
         if not free[r, c]:
             return False
     return True
@@ -197,9 +195,7 @@ def flee(grid: WalkGrid, place: Floats, other: Floats, step: float) -> tuple[flo
 
 
 @kernel
-def walking_time(
-    grid: WalkGrid, start: int, goal: int, other: Floats, step: float, keep: float, limit: float
-) -> float:
+def walking_time(grid: WalkGrid, start: int, goal: int, other: Floats, step: float, keep: float, limit: float) -> float:
     """How long it takes to walk from one point to another past somebody who stands still [s].
 
     Args:
