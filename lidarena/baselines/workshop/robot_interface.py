@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.envs.registration import owner_of
-from lidarena.envs.workshop.compiler.motion import Motion
+from lidarena.envs.workshop.compiler.motion import WorkspaceMotion
 from lidarena.envs.workshop.compiler.schedule import PlanProblem, Snapshot
 from lidarena.envs.workshop.kernels import AWAY, DONE, OPEN, RUNNING, WALKING, WORKING
 from lidarena.envs.workshop.task import HUMAN, ROBOT, WorkshopTask
@@ -97,7 +97,7 @@ class Scheduler:
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode."""
 
-    def snapshot(self, now: Situation, problem: PlanProblem, motion: Motion) -> Snapshot:
+    def snapshot(self, now: Situation, problem: PlanProblem, motion: WorkspaceMotion) -> Snapshot:
         """What has been done so far and what is expected of what is under way, in the terms of schedules."""
         arrays = self.task.arrays
         begun = np.where(now.status == OPEN, np.inf, now.begun)
@@ -115,7 +115,7 @@ class Scheduler:
         return Snapshot(free, place, first, begun, ended, stays)
 
     def _expect(
-        self, now: Situation, problem: PlanProblem, motion: Motion, agent: int,
+        self, now: Situation, problem: PlanProblem, motion: WorkspaceMotion, agent: int,
         out: tuple[Floats, Ints, Floats, Floats],
     ) -> None:  # fmt: skip
         """When an agent will be free, and where."""

@@ -56,7 +56,7 @@ class WorkshopEnv(SingleWorld):
     | deadline | 1 when everything is done in time | 1 | |
     | robot_idle | minus the robot's idle seconds over the deadline | 0 | |
     | human_idle | minus the human's idle seconds over the deadline | 0 | |
-    | unfinished | minus the share of the actions that is left where an episode is cut off | 10 | 10 |
+    | unfinished | minus the share of the actions that is left when the time is up | 10 | 10 |
 
     ## Starting state
 
@@ -75,11 +75,11 @@ class WorkshopEnv(SingleWorld):
     working, 4 away, ``since`` (2,) for how long [s], ``stop`` (2,) at which of the action's locations,
     ``human_present``; of the actions ``status`` (n,) 0 open, 1 under way, 2 done, ``agent`` (n,) 0 human, 1 robot, -1
     nobody, ``begun``, ``placed`` (the work at the last location), ``ended`` (n,) [s], ``worked`` (n,) time of the work
-    once it is done [s], ``allowed_human`` and ``allowed_robot`` (n,); ``unplanned``, how many actions were done against
-    the task, ``refused``. Measures so far: ``completion``, ``makespan`` [s], ``deadline_met``, ``human_idle``,
-    ``robot_idle`` and ``concurrent`` as shares of the time (walking is not idling), ``functional_delay`` over the time,
-    ``bounds_broken``, the share of the human's actions, ``separation``, the least distance between the two [m].
-    ``reward_terms``. With ``expose_truth=True`` ``truth``, for evaluation.
+    once it is done [s], all -1 before that, ``allowed_human`` and ``allowed_robot`` (n,); ``unplanned``, how many
+    actions were done against the task, ``refused``. Measures so far: ``completion``, ``makespan`` [s],
+    ``deadline_met``, ``human_idle``, ``robot_idle`` and ``concurrent`` as shares of the time (walking is not idling),
+    ``functional_delay`` over the time, ``bounds_broken``, the share of the human's actions, ``separation``, the least
+    distance between the two [m]. ``reward_terms``. With ``expose_truth=True`` ``truth``, for evaluation.
 
     ## Arguments
 

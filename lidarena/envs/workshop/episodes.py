@@ -99,7 +99,7 @@ class WorkshopEpisodes:
         truncated = ~terminated & (over | (self._steps >= most) if most != -1 else over)
         spent = (self.core.time - self._before * 0.1) / task.deadline
         weighed = weigh_terms(
-            self._rewards.chosen.weights, spent, (s.idle - idle) / task.deadline, terminated | truncated, undone,
+            self._rewards.chosen.weights, spent, (s.idle - idle) / task.deadline, over, undone,
             self.core.time / task.deadline,
         )  # fmt: skip
         rewards = self._rewards.add_up(weighed, np.asarray(actions))

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     from lidarena.envs.workshop.state import WorkshopCore
 
 Floats = NDArray[np.float64]
+NEVER = -1.0
+"""In place of a time that is not known yet."""
 
 
 def describe(core: "WorkshopCore", recognizer: "Recognizer | None" = None) -> Info:
@@ -40,10 +42,10 @@ def describe(core: "WorkshopCore", recognizer: "Recognizer | None" = None) -> In
             "human_present": (s.phase[:, HUMAN] != AWAY) & (s.action[:, HUMAN] != LEAVING),
             "status": s.status.copy(),
             "agent": s.agent.copy(),
-            "begun": s.begun.copy(),
-            "placed": s.placed.copy(),
-            "ended": s.ended.copy(),
-            "worked": np.where(done, s.worked, np.nan),
+            "begun": np.where(np.isnan(s.begun), NEVER, s.begun),
+            "placed": np.where(np.isnan(s.placed), NEVER, s.placed),
+            "ended": np.where(np.isnan(s.ended), NEVER, s.ended),
+            "worked": np.where(done, s.worked, NEVER),
             "unplanned": s.unplanned.sum(axis=1),
             "allowed_human": free[:, HUMAN],
             "allowed_robot": free[:, ROBOT],

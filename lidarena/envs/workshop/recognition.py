@@ -90,8 +90,12 @@ def estimate(
             continue
         if begun[w] != s.begun[w, action]:
             begun[w] = s.begun[w, action]
+            possible = 0.0
             for k in range(belief.shape[1]):
                 belief[w, k] = 1.0 if k == action or is_allowed(task, s, w, HUMAN, k) else 0.0
+                possible += belief[w, k]
+            for k in range(belief.shape[1]):
+                belief[w, k] /= possible
         if s.stop[w, HUMAN] > 0:
             continue  # what it fetched is known: the belief stays
         x = s.poses[w, HUMAN, 0] + NOISE * normal(streams[w])

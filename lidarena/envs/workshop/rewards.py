@@ -23,7 +23,7 @@ REWARDS = RewardTerms(
 )
 """``time`` is minus the seconds over the task's deadline, ``completion`` 1 when everything is done, ``deadline`` 1 when
 it is done in time, ``robot_idle`` and ``human_idle`` minus the idle seconds over the deadline, ``unfinished`` minus the
-share of the actions that are not done where an episode is cut off."""
+share of the actions that are not done when the time is up."""
 
 
 def weigh_terms(
@@ -40,7 +40,7 @@ def weigh_terms(
         weights: By term.
         spent: (worlds,) time of the step over the deadline.
         idle: (worlds, 2) idle time of human and robot over the deadline.
-        over: (worlds,) whether the episode has ended.
+        over: (worlds,) whether everything is done or the time is up.
         undone: (worlds,) share of the actions that are not done.
         time: (worlds,) since the episode began, over the deadline.
     """

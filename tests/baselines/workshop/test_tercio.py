@@ -36,7 +36,7 @@ def test_capability_is_kept_and_everything_is_done() -> None:
 
 
 def test_locations_near_the_human_are_left_out() -> None:
-    task = task_of({"x": action("a", robot=None), "y": action("b"), "z": action("d")},
+    task = task_of({"x": action("a", robot=None), "y": action("b", human=None), "z": action("d", human=None)},
                    locations={"a": [1, 5], "b": [1.6, 5], "d": [7, 5]})  # fmt: skip
     env = WorkshopEnv(task=task, human=lambda info, rng: 0 if info["status"][0] == 0 else None)
     policy = AllocatedSequence(env)

@@ -16,6 +16,7 @@ from lidarena.envs import workshop_v0
 from tests.envs.workshop.workshops import action, chain, loose, task_of
 
 
+@pytest.mark.filterwarnings("ignore:We recommend agents to be named")  # as player_0
 def test_pettingzoos_tests_are_passed(capsys: pytest.CaptureFixture[str]) -> None:
     parallel_api_test(workshop_v0.parallel_env(), 60)
     api_test(workshop_v0.env(), num_cycles=60)

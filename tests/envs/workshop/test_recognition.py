@@ -6,11 +6,12 @@ from tests.envs.workshop.workshops import loose
 
 def guesses(seeds: int) -> tuple[list[bool], list[bool]]:
     """Whether the human's action is guessed right at its choice, and some seconds later."""
-    env = WorkshopEnv(task=loose(4), human="free", recognition="position", expose_truth=True, wait_period=3.0)
+    env = WorkshopEnv(task=loose(4), human="free", recognition="position", expose_truth=True, wait_period=2.0)
     early, late = [], []
     for seed in range(seeds):
         _, info = env.reset(seed=seed)
         early.append(info["doing"][0] == info["truth"]["action"][0])
+        env.step(4)
         _, _, _, _, info = env.step(4)
         late.append(info["doing"][0] == info["truth"]["action"][0])
     return early, late
@@ -18,7 +19,7 @@ def guesses(seeds: int) -> tuple[list[bool], list[bool]]:
 
 def test_where_the_human_walks_tells_what_it_does() -> None:
     early, late = guesses(40)
-    assert np.mean(early) < 0.7 < 0.8 < np.mean(late)
+    assert np.mean(late) > max(0.7, np.mean(early) + 0.2)
 
 
 def test_beliefs_are_probabilities() -> None:

@@ -1,7 +1,7 @@
 """From a task to the plans by which two can do it: orders, motion durations in the shared workspace, STNUs."""
 
 from lidarena.envs.workshop.compiler.compiled import CompiledTask, compile_task
-from lidarena.envs.workshop.compiler.motion import Motion, acquire_motion
+from lidarena.envs.workshop.compiler.motion import WorkspaceMotion, acquire_motion
 from lidarena.envs.workshop.compiler.networks import (
     CATEGORIES,
     CONSISTENT,
@@ -19,9 +19,9 @@ __all__ = [
     "CONTROLLABLE",
     "INCONSISTENT",
     "CompiledTask",
-    "Motion",
     "PlanProblem",
     "Snapshot",
+    "WorkspaceMotion",
     "acquire_motion",
     "categorize",
     "compile_task",

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.errors import WriteError
 from lidarena.base.files import write_bytes
-from lidarena.envs.workshop.compiler.motion import Motion, acquire_motion
+from lidarena.envs.workshop.compiler.motion import WorkspaceMotion, acquire_motion
 from lidarena.envs.workshop.compiler.networks import CATEGORIES, INCONSISTENT, categorize, plan_network
 from lidarena.envs.workshop.compiler.plans import enumerate_plans
 from lidarena.envs.workshop.compiler.schedule import PlanProblem, Snapshot, predict, predict_all, search_plans
@@ -48,7 +48,7 @@ class CompiledTask:
     """
 
     task: WorkshopTask
-    motion: Motion
+    motion: WorkspaceMotion
     plans: Ints
     makespans: Floats
     categories: Ints
@@ -71,7 +71,7 @@ class CompiledTask:
         return f"task {self.task.name!r}: {len(self.plans)} {which}, {parts}; quickest {self.makespans[0]:.1f} s"
 
 
-def plan_problem(task: WorkshopTask, motion: Motion) -> PlanProblem:
+def plan_problem(task: WorkshopTask, motion: WorkspaceMotion) -> PlanProblem:
     """What schedules need to know; usual are the middle of the human's bounds and the robot's least time."""
     arrays = task.arrays
     usual = np.stack([np.sqrt(arrays.lower[HUMAN] * arrays.upper[HUMAN]), arrays.lower[ROBOT]])
@@ -87,7 +87,7 @@ def plan_problem(task: WorkshopTask, motion: Motion) -> PlanProblem:
     )  # fmt: skip
 
 
-def beginning(task: WorkshopTask, motion: Motion) -> Snapshot:
+def beginning(task: WorkshopTask, motion: WorkspaceMotion) -> Snapshot:
     """Nothing has been done: both are at home."""
     count, stops = len(task.actions), task.arrays.stops.shape[1]
     home, stays = task.arrays.home, np.full((2, stops, 3), -1.0)
@@ -125,7 +125,7 @@ def compile_task(
     return compiled
 
 
-def _compile(task: WorkshopTask, motion: Motion, progress: bool) -> CompiledTask:
+def _compile(task: WorkshopTask, motion: WorkspaceMotion, progress: bool) -> CompiledTask:
     problem, start = plan_problem(task, motion), beginning(task, motion)
     plans, complete = enumerate_plans(task.arrays, MOST_PLANS), True
     if plans is None:
@@ -161,7 +161,7 @@ def _read(file: Path, task: WorkshopTask) -> CompiledTask | None:
     """A compiled task; None if there is none, or its file is torn."""
     try:
         with np.load(io.BytesIO(file.read_bytes()), allow_pickle=False) as saved:
-            motion = Motion(saved["time"], saved["near"])
+            motion = WorkspaceMotion(saved["time"], saved["near"])
             found = (saved["plans"], saved["makespans"], saved["categories"], bool(saved["complete"]))
             return CompiledTask(task, motion, *found)
     except (OSError, KeyError, ValueError, EOFError, zipfile.BadZipFile):

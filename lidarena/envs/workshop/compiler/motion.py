@@ -15,7 +15,7 @@ _BLOCKED = 15.0
 """What a blocked way costs beside its usual time: the other will be gone by then [s]."""
 
 
-class Motion(NamedTuple):
+class WorkspaceMotion(NamedTuple):
     """Durations of ways between the ``L`` locations of a task."""
 
     time: Floats
@@ -25,7 +25,7 @@ class Motion(NamedTuple):
     """(L, L) whether an agent at the first location and the other at the second would come too near: one must wait"""
 
 
-def acquire_motion(task: WorkshopTask, separation: float, space: bool = True) -> Motion:
+def acquire_motion(task: WorkshopTask, separation: float, space: bool = True) -> WorkspaceMotion:
     """Walk every way, alone and past the other at every location; the walks are the environment's own.
 
     Args:
@@ -36,7 +36,7 @@ def acquire_motion(task: WorkshopTask, separation: float, space: bool = True) ->
     count, arrays, grid = len(task.locations), task.arrays, task.grid
     time, near = np.zeros((2, count, count, count + 1)), np.zeros((count, count), np.bool_)
     if not space:
-        return Motion(time, near)
+        return WorkspaceMotion(time, near)
     keep = float(sum(task.radii)) + separation
     for agent in range(2):
         mine, theirs = grid.points[arrays.field[:, agent]], grid.points[arrays.field[:, 1 - agent]]
@@ -52,4 +52,4 @@ def acquire_motion(task: WorkshopTask, separation: float, space: bool = True) ->
                 if min(apart[i, k], apart[j, k]) >= keep:
                     past = walking_time(grid, *ends, theirs[k].copy(), step, keep, alone + _PATIENCE)
                     time[agent, i, j, k] = past if np.isfinite(past) else alone + _BLOCKED
-    return Motion(time, near)
+    return WorkspaceMotion(time, near)

@@ -31,7 +31,7 @@ class PlanProblem(NamedTuple):
     share: Floats
     """(n, S)"""
     time: Floats
-    """(2, L, L, L + 1) of the ways, see ``Motion`` [s]"""
+    """(2, L, L, L + 1) of the ways, see ``WorkspaceMotion`` [s]"""
     near: NDArray[np.bool_]
     """(L, L)"""
     tail: Floats
