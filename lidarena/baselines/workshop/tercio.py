@@ -65,6 +65,7 @@ class AllocatedSequence(Scheduler):
             cost, constraints=LinearConstraint(rows, least, np.inf), bounds=Bounds(low, high),
             integrality=np.append(np.ones(count), 0),
         )  # fmt: skip
+        assert found.x is not None  # somebody can do each action
         owner[opens] = np.where(found.x[:count] > 0.5, ROBOT, HUMAN)
         return owner
 

@@ -305,7 +305,7 @@ def _steer(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, a
         return 0.0
     s.stuck[w, agent] = max(0.0, s.stuck[w, agent] - 0.5 * TICK) if dx != wanted[0] or dy != wanted[1] else 0.0
     wanted[0], wanted[1] = dx, dy
-    return step
+    return float(step)
 
 
 @leaf
@@ -371,7 +371,7 @@ def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, 
 @inlined
 def _may_return(task: TaskArrays, s: Workers, w: int, agent: int) -> bool:
     """Whether who gave way while waiting goes back, since the other has gone on or the wait is over."""
-    return s.phase[w, 1 - agent] != WALKING or s.stuck[w, 1 - agent] == 0.0
+    return bool(s.phase[w, 1 - agent] != WALKING or s.stuck[w, 1 - agent] == 0.0)
 
 
 @leaf
@@ -388,7 +388,7 @@ def _still(s: Workers, rules: Rules, w: int) -> int:
             soonest = min(soonest, s.wake[w, agent] - s.ticks[w] * TICK)
         else:
             soonest = min(soonest, TICK if s.phase[w, 1 - agent] == WAITING else rules.limit)
-    return max(1, math.ceil(soonest / TICK - 1e-6))
+    return int(max(1, math.ceil(soonest / TICK - 1e-6)))
 
 
 @leaf

@@ -116,4 +116,4 @@ def _likelihood(task: TaskArrays, grid: WalkGrid, s: Workers, w: int, action: in
     if s.phase[w, HUMAN] == WALKING:
         behind = np.hypot(x - s.origin[w, 0], y - s.origin[w, 1])
         detour = max(detour + behind - way_length(grid, field, s.origin[w, 0], s.origin[w, 1]), 0.0)
-    return max(np.exp(-detour / _SURE), _UNLIKELY)
+    return float(max(np.exp(-detour / _SURE), _UNLIKELY))

@@ -65,7 +65,7 @@ class WorkshopCore:
     @property
     def time(self) -> NDArray[np.float64]:
         """(worlds,) since the episodes began [s]."""
-        return self.workers.ticks * TICK
+        return np.asarray(self.workers.ticks * TICK, np.float64)
 
     def reset_world(self, world: int, rng: np.random.Generator) -> None:
         """Begin a new episode in one world; everything random is drawn from its generator."""

@@ -53,7 +53,7 @@ def make_walk_grid(plan: Floorplan, points: Floats, radius: float) -> WalkGrid:
     raster = plan.raster(RESOLUTION)
     free = ~raster.solid & (raster.clearance >= radius + SLACK)
     x, y = raster.origin.tolist()
-    nearest: NDArray[np.int64] = distance_transform_edt(~free, return_distances=False, return_indices=True)
+    nearest = distance_transform_edt(~free, return_distances=False, return_indices=True).astype(np.int64)
     toward = np.zeros((len(points), *free.shape, 2), np.float32)
     lengths = np.full((len(points), *free.shape), np.inf, np.float32)
     for number, point in enumerate(points):
@@ -118,7 +118,7 @@ def _sees(free: NDArray[np.bool_], r0: int, c0: int, r1: int, c1: int) -> bool:
 def is_free(grid: WalkGrid, x: float, y: float) -> bool:
     """Whether a body's centre may be at a place."""
     row, column = int((y - grid.y) / RESOLUTION), int((x - grid.x) / RESOLUTION)
-    return 0 <= row < grid.free.shape[0] and 0 <= column < grid.free.shape[1] and grid.free[row, column]
+    return bool(0 <= row < grid.free.shape[0] and 0 <= column < grid.free.shape[1] and grid.free[row, column])
 
 
 @leaf
