@@ -3,6 +3,7 @@
 #   make compare   train a small agent and compare it with the classical methods: table and pictures
 #   make test      the tests
 #   make lint      style and types
+#   make docs      the pages of docs/, into site/
 #
 # make compare PYTHON=python3.12   uses another Python
 
@@ -11,7 +12,7 @@ TEST_PROCESSES ?= 2
 BIN := .venv/bin
 INSTALLED := .venv/.installed
 
-.PHONY: compare test lint install
+.PHONY: compare test lint docs install
 
 compare: $(INSTALLED)
 	@# Earlier runs are kept: the last one moves to runs/quick.1, runs/quick.2, …
@@ -28,6 +29,9 @@ test: $(INSTALLED)
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
 	$(BIN)/mypy lidarena train.py evaluate.py
+
+docs: $(INSTALLED)
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
 
 install: $(INSTALLED)
 

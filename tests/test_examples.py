@@ -51,6 +51,6 @@ def test_what_a_stranger_writes_is_short(path: Path) -> None:
     assert len(path.read_text().splitlines()) <= MOST_LINES.get(path.stem, 40)
 
 
-def test_the_readme_names_every_example() -> None:
-    readme = (ROOT / "README.md").read_text()
-    assert [name for name in PROMISED if f"examples/{name}.py" not in readme] == []
+def test_the_pages_name_every_example() -> None:
+    texts = "".join(page.read_text() for page in [ROOT / "README.md", *(ROOT / "docs").rglob("*.md")])
+    assert [name for name in PROMISED if f"examples/{name}.py" not in texts] == []

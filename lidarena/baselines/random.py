@@ -4,13 +4,14 @@ import copy
 from typing import Any
 
 import gymnasium as gym
+import numpy as np
 
 from lidarena.baselines.registry import register
 
 
 @register("random")
 class RandomPolicy:
-    """Draws every action uniformly from the environment's action space, from a generator of its own."""
+    """Draws every action uniformly from the environment's action space, or from what its mask allows."""
 
     def __init__(self, env: Any) -> None:
         """Make it for an environment.
@@ -27,5 +28,8 @@ class RandomPolicy:
         self._space.seed(seed)
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        """Return a random action, whatever is observed."""
+        """Return a random action; of those that ``info["action_mask"]`` allows, where there is one."""
+        mask = info.get("action_mask")
+        if mask is not None and isinstance(self._space, gym.spaces.Discrete) and np.shape(mask) == (self._space.n,):
+            return self._space.sample(np.asarray(mask, np.int8)) if np.any(mask) else self._space.sample()
         return self._space.sample()

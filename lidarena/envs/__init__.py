@@ -6,6 +6,7 @@ from lidarena.envs.exploration import BatchedExploration, ExplorationEnv
 from lidarena.envs.registration import Family, Registration, register_all, register_family
 from lidarena.envs.seabed import BatchedSeabed, SeabedEnv
 from lidarena.envs.worker_threads import set_num_threads
+from lidarena.envs.workshop import BatchedWorkshop, WorkshopEnv
 
 __all__ = [
     "ArenaEnv",
@@ -13,11 +14,13 @@ __all__ = [
     "BatchedCorridor",
     "BatchedExploration",
     "BatchedSeabed",
+    "BatchedWorkshop",
     "CorridorCentralEnv",
     "ExplorationEnv",
     "Family",
     "Registration",
     "SeabedEnv",
+    "WorkshopEnv",
     "register_all",
     "register_family",
     "set_num_threads",

@@ -13,7 +13,7 @@ import gymnasium as gym
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.base.import_names import import_named
 
-BUILT_IN = ("exploration", "arena", "corridor", "seabed")
+BUILT_IN = ("exploration", "arena", "corridor", "workshop", "seabed")
 """Packages of ``lidarena.envs`` that hold a ``FAMILY``."""
 _MOST_WRAPPERS = 64
 

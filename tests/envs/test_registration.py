@@ -21,7 +21,7 @@ from lidarena.envs.registration import (
     register_family,
 )
 
-OURS = ("exploration", "arena", "corridor")
+OURS = ("exploration", "arena", "corridor", "workshop")
 
 
 @pytest.fixture

@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv, SeabedEnv
+from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv, SeabedEnv, WorkshopEnv
 from lidarena.envs.arena.options import ArenaOptions
 from lidarena.envs.arena.rewards import REWARDS as ARENA
 from lidarena.envs.corridor.options import CorridorOptions
@@ -18,12 +18,15 @@ from lidarena.envs.exploration.rewards import REWARDS as EXPLORATION
 from lidarena.envs.rewards import RewardTerms
 from lidarena.envs.seabed.options import SeabedOptions
 from lidarena.envs.seabed.rewards import REWARDS as SEABED
+from lidarena.envs.workshop.options import WorkshopOptions
+from lidarena.envs.workshop.rewards import REWARDS as WORKSHOP
 
 DOCUMENTED: list[tuple[type[Any], type[Any], RewardTerms]] = [
     (ExplorationEnv, ExplorationOptions, EXPLORATION),
     (ArenaEnv, ArenaOptions, ARENA),
     (CorridorEnv, CorridorOptions, CORRIDOR),
     (SeabedEnv, SeabedOptions, SEABED),
+    (WorkshopEnv, WorkshopOptions, WORKSHOP),
 ]
 SECTIONS = ["Description", "Action space", "Observation space", "Rewards", "Starting state", "Episode end", "Info"]
 SECTIONS += ["Arguments", "References", "Version History"]
@@ -45,8 +48,7 @@ def test_the_table_of_arguments_names_every_keyword_and_its_default(
 ) -> None:
     table = {cells[0].strip("`"): cells for cells in rows(environment, "Arguments")}
     expected = {field.name: repr(field.default).replace("'", '"') for field in fields(options)}
-    if environment is not SeabedEnv:
-        expected |= dict.fromkeys(("robot", "lidar"), "None")  # which stands for the family's own
+    expected |= {name: "None" for name in ("robot", "lidar") if name in expected}  # which stands for the family's own
     if environment is CorridorEnv:  # as PettingZoo calls it
         expected = {"max_cycles": expected.pop("max_episode_steps")} | expected
     assert {name: cells[2].strip("`") for name, cells in table.items()} == expected
@@ -76,7 +78,7 @@ def test_the_central_environment_tells_where_it_differs_from_corridor_v0() -> No
     assert own.keys() == {field.name for field in fields(CorridorOptions)} - shared
 
 
-@pytest.mark.parametrize("environment", [ExplorationEnv, ArenaEnv, CorridorCentralEnv, CorridorEnv])
+@pytest.mark.parametrize("environment", [ExplorationEnv, ArenaEnv, CorridorCentralEnv, CorridorEnv, WorkshopEnv])
 def test_sections_stand_in_gymnasiums_order(environment: type[Any]) -> None:
     assert re.findall(r"^## (.*)$", inspect.getdoc(environment) or "", re.M) == SECTIONS
 

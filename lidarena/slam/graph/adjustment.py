@@ -16,11 +16,13 @@ _DOUBT = 30.0
 """Squared Mahalanobis distance from which on a pair is doubted."""
 _BACK = (1, 2, 4, 7)
 """Each keyframe is compared with so manyth ones before it."""
+_OPPOSITE = 1.0
+"""Scans that see the same from elsewhere count as so much farther apart [m]."""
 _VISIT = 30
 """Keyframes nearer to each other in time belong to one visit."""
 _ALIKE = np.array([1.2, 1.2, 0.7])
 """Scans taken nearer to each other see nearly the same [m, m, rad]."""
-_AGREED, _RUN = 0.4, 3
+_AGREED, _RUN = 0.4, 5
 """Where a smaller share of the points fits in so many keyframes one after the other, a map is torn. In sound maps three
 of four fit, hardly ever less than one of two; in torn ones next to none."""
 
@@ -36,7 +38,7 @@ def adjusted(front: FrontEnd, poses: Floats, rounds: int = 6) -> tuple[Floats, E
     Returns:
         (K, 3) poses, and what was measured between them in the end.
     """
-    pairs, weak = neighbours(poses), _chain(poses)
+    pairs, weak = neighbours(poses, front.viewed(poses)), _chain(poses)
     edges = weak
     for r in range(rounds):
         edges = joined([_matched(front, poses, pairs, max(0.3 - 0.05 * r, 0.1)), weak])
@@ -44,13 +46,24 @@ def adjusted(front: FrontEnd, poses: Floats, rounds: int = 6) -> tuple[Floats, E
     return poses, edges
 
 
-def neighbours(poses: Floats, visits: int = 4, apart: float = 2.5) -> NDArray[np.int64]:
-    """(P, 2) which keyframes are compared: each with some before it, and with the nearest of other visits."""
+def neighbours(poses: Floats, views: Floats, visits: int = 4, apart: float = 2.5) -> NDArray[np.int64]:
+    """Which keyframes are compared: each with some before it, and with the nearest of other visits.
+
+    Args:
+        poses: (K, 3) of the keyframes.
+        views: (K, 2) the middle of what each saw: who comes back the other way sees the same from elsewhere.
+        visits: So many other visits count, at most.
+        apart: Keyframes farther from each other are not compared [m].
+
+    Returns:
+        (P, 2) pairs, the earlier keyframe first.
+    """
     pairs = []
     for k in range(1, len(poses)):
         away = np.hypot(poses[:k, 0] - poses[k, 0], poses[:k, 1] - poses[k, 1])
         away += 1.2 * np.abs(wrapped(poses[:k, 2] - poses[k, 2]))
         pairs += [(k - back, k) for back in _BACK if k >= back and away[k - back] < apart]
+        away = np.minimum(away, np.hypot(views[:k, 0] - views[k, 0], views[:k, 1] - views[k, 1]) + _OPPOSITE)
         away[max(k - _VISIT, 0) :] = np.inf
         for _ in range(visits):
             nearest = int(np.argmin(away))
@@ -87,7 +100,7 @@ def agreement(front: FrontEnd, poses: Floats) -> tuple[NDArray[np.int64], Floats
     Returns:
         (P, 2) keyframes of different visits that should see the same, and (P,) the share of points that fit.
     """
-    pairs = neighbours(poses)
+    pairs = neighbours(poses, front.viewed(poses))
     motions = np.abs(between(poses[pairs[:, 0]], poses[pairs[:, 1]]))
     pairs = pairs[(pairs[:, 1] - pairs[:, 0] >= _VISIT) & np.all(motions < _ALIKE, axis=1)]
     systems = np.zeros((len(pairs), PAIR_COLUMNS))

@@ -124,21 +124,24 @@ class BackEnd:
         radius = np.minimum(1.0 + 0.04 * unclosed, 8.0)
         away = np.hypot(poses[:k, 0] - poses[k, 0], poses[:k, 1] - poses[k, 1])
         turned = np.abs(wrapped(poses[:k, 2] - poses[k, 2]))
-        cost = away / (radius + 2.0) + 0.4 * turned
-        free = (way[k] - way[:k] > _FAR + 2.0 * radius) & (away < radius + 2.0) & (turned < 1.2)
+        views = self.front.viewed(poses)
+        apart = np.hypot(*(views[:k] - views[k]).T)
+        alike = np.where((away < radius + 2.0) & (turned < 1.2), away / (radius + 2.0) + 0.4 * turned, np.inf)
+        opposite = np.where(apart < radius + 1.0, apart / (radius + 2.0) + 0.5, np.inf)
+        cost = np.minimum(alike, opposite)
+        free = (way[k] - way[:k] > _FAR + 2.0 * radius) & np.isfinite(cost)
         found: list[FoundLoop] = []
         for _ in range(3):
             if not free.any():
                 break
             target = int(np.argmin(np.where(free, cost, np.inf)))
-            reach = float(min(radius[target], 0.5 + away[target] + radius[target]))
-            loop = self._verified(poses, k, target, reach)
+            loop = self._verified(poses, views, k, target, float(radius[target]))
             if loop is not None:
                 found.append(loop)
             free[max(target - 40, 0) : target + 40] = False
         return found
 
-    def _verified(self, poses: Floats, k: int, target: int, radius: float) -> FoundLoop | None:
+    def _verified(self, poses: Floats, views: Floats, k: int, target: int, radius: float) -> FoundLoop | None:
         """The loop from keyframe k to the keyframes around a target, if it holds."""
         store, fan, grid = self.front.store, self.front.fan, self.grid
         near = np.arange(max(target - 10, 0), min(target + 11, k))
@@ -153,6 +156,8 @@ class BackEnd:
         if found[3] < 0.55:
             return None
         cost = np.hypot(*(poses[near, :2] - found[:2]).T) + np.abs(wrapped(poses[near, 2] - found[2]))
+        seen = compose(found[:3], np.array([*self.front.views[k], 0.0]))
+        cost = np.minimum(cost, np.hypot(*(views[near] - seen[:2]).T) + 1.0)
         chosen = near[np.argsort(cost, kind="stable")[:5]]
         pose, system = found[:3].copy(), np.zeros(16)
         stride = max(fan.beams // 180, 1)

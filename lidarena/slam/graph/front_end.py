@@ -39,6 +39,7 @@ class FrontEndParameters:
         references: Keyframes that a scan is aligned with.
         low_score: A match below this is searched in a wider window.
         lost_score: A match below this is not believed.
+        low_share: Where a smaller share of the points lies on known surfaces, the scan is searched farther away, too.
     """
 
     usable_range: float = 20.0
@@ -47,6 +48,7 @@ class FrontEndParameters:
     references: int = 6
     low_score: float = 0.65
     lost_score: float = 0.3
+    low_share: float = 0.5
 
 
 @dataclass
@@ -62,7 +64,9 @@ class FrontEnd:
         information: Of each keyframe, how surely its match holds it where it is: upper triangle (6,) of the normal
             equations, in the frame of the poses.
         scores: How well each scan fitted, 0 to 1.
+        views: Of each keyframe, the middle (2,) of what it saw, in the laser's frame [m].
         held: Whether a scan's match was not believed, so that the wheels alone tell its pose.
+        shares: Share of each scan's points that lie on known surfaces.
     """
 
     fan: BeamFan
@@ -71,7 +75,9 @@ class FrontEnd:
     keyframes: list[int] = field(default_factory=list)
     information: list[Floats] = field(default_factory=list)
     scores: list[float] = field(default_factory=list)
+    views: list[Floats] = field(default_factory=list)
     held: list[bool] = field(default_factory=list)
+    shares: list[float] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.store: SurfacePoints = empty_points(256, self.fan.beams)
@@ -87,6 +93,11 @@ class FrontEnd:
     def node(self, keyframe: int) -> Floats:
         """(3,) pose of a keyframe, by its place in their order."""
         return self.poses[self.keyframes[keyframe]]
+
+    def viewed(self, poses: Floats) -> Floats:
+        """(K, 2) the middle of what each of the first keyframes saw, with the keyframes at ``poses`` (K, 3)."""
+        views = np.array(self.views[: len(poses)]).reshape(-1, 2)
+        return compose(poses, np.concatenate([views, np.zeros((len(views), 1))], axis=1))[:, :2]
 
     def add(self, odometry: Floats, ranges: NDArray[np.float32], unsure: bool = False) -> bool:
         """Match a scan.
@@ -112,6 +123,7 @@ class FrontEnd:
         self.odometry = odometry
         self.poses.append(pose)
         self.scores.append(score)
+        self.shares.append(float(self.system[10] / max(self.system[11], 1.0)))
         self.held.append(score < self.parameters.lost_score)
         return self._keep(points)
 
@@ -133,21 +145,32 @@ class FrontEnd:
             moved = self._search(slot, compose(self.poses[-1], self._told(self.odometry, unsure=True)), around, loose)
             if moved[3] > found[3] + 0.03:
                 found, spread = moved, loose
+        far = np.array([max(0.5, 2.0 * spread[0], 2.5 * math.hypot(motion[0], motion[1])), max(0.6, 3.0 * spread[1])])
         if found[3] < self.parameters.low_score:
-            wider = np.array([max(0.5, 2.0 * spread[0]), max(0.6, 3.0 * spread[1])])
-            wide = self._search(slot, guess, wider, spread)
+            wide = self._search(slot, guess, far, spread)
             found = wide if wide[3] > found[3] + 0.03 else found
         if found[3] < self.parameters.lost_score:
             return guess, float(found[3])
-        others = self._references(found[:3])
-        pose, poses = found[:3].copy(), np.array([self.node(int(o)) for o in others])
+        pose, share = self._aligned(slot, found[:3], spread)
+        if share < self.parameters.low_share:
+            # wheels that count backwards as forwards, and the like
+            wide, system = self._search(slot, guess, far, 3.0 * spread), self.system.copy()
+            other, better = self._aligned(slot, wide[:3], spread)
+            if better > share + 0.1:
+                return other, float(wide[3])
+            self.system[:] = system
+        return pose, float(found[3])
+
+    def _aligned(self, slot: int, found: Floats, spread: Floats) -> tuple[Floats, float]:
+        """The pose near a found one where the surfaces lie together, and the share of the points that fit there."""
+        others = self._references(found)
+        pose, poses = found.copy(), np.array([self.node(int(o)) for o in others])
         prior = np.array([4.0, 4.0, 1.0]) / spread[[0, 0, 1]] ** 2
         stride = max(self.fan.beams // _ALIGNED, 1)
         align(self.store, self.fan, slot, others, poses, pose, prior, _ROUNDS, stride, self.system)
-        moved = between(found[:3], pose)
-        if math.hypot(moved[0], moved[1]) > 0.3 or abs(moved[2]) > 0.2:
-            return found[:3].copy(), float(found[3])
-        return pose, float(found[3])
+        moved = between(found, pose)
+        strayed = math.hypot(moved[0], moved[1]) > 0.3 or abs(moved[2]) > 0.2
+        return found.copy() if strayed else pose, float(self.system[10] / max(self.system[11], 1.0))
 
     def _search(self, slot: int, guess: Floats, window: Floats, spread: Floats) -> Floats:
         """Best pose in a window, coarsely, then finely."""
@@ -174,6 +197,8 @@ class FrontEnd:
                 return False
         self.keyframes.append(len(self.poses) - 1)
         self.information.append(self.system[:6].copy())
+        seen = self.store.points[len(self.views)][self.store.weights[len(self.views)] > 0.0]
+        self.views.append(np.asarray(seen.mean(axis=0), np.float64) if len(seen) else np.zeros(2))
         draw_scan(self.grid, self.store, len(self.keyframes) - 1, self.poses[-1], 1)
         if len(self.keyframes) - self.drawn > _DRAWN:
             self._forget()

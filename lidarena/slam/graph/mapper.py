@@ -17,6 +17,8 @@ Floats = NDArray[np.float64]
 
 _CONTRADICTED = 0.3
 """A loop from which the finished map is farther away [m, rad] was not kept."""
+_UNLIKE, _SOME = 0.3, 0.02
+"""Scans of which a smaller share fits are doubtful; one of fifty are too many."""
 _MANY = 0.2
 """Share of the loops that may be wrong: places that look alike."""
 
@@ -202,6 +204,11 @@ def _doubts(front: FrontEnd, loops: list[Loop], torn: NDArray[np.int64]) -> list
     if held:
         first = int(np.argmax(front.held))
         doubts.append(f"{held} of {front.count} scans fitted nothing and follow the wheels alone, first scan {first}")
+    unlike = int(np.sum(np.array(front.shares[1:]) < _UNLIKE)) - held
+    if unlike > _SOME * front.count:
+        doubts.append(
+            f"{unlike} of {front.count} scans hardly fit what was seen before them; the way may be wrong there"
+        )
     if len(torn):
         worst = "; ".join(f"scans {a} and {b}" for a, b in torn[:3])
         doubts.append(

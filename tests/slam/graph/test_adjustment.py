@@ -22,7 +22,8 @@ def test_a_bent_way_is_straightened() -> None:
 
 def test_neighbours_are_of_the_last_keyframes_and_of_other_visits() -> None:
     line = np.stack([0.3 * np.arange(50.0), np.zeros(50), np.zeros(50)], axis=1)
-    pairs = neighbours(np.concatenate([line, line]))
+    poses = np.concatenate([line, line])
+    pairs = neighbours(poses, poses[:, :2])
     assert (pairs[:, 0] < pairs[:, 1]).all()
     assert {tuple(pair) for pair in pairs} >= {(10, 11), (9, 11), (11, 61)}
 
@@ -33,3 +34,13 @@ def test_a_true_map_agrees_with_itself_and_a_torn_one_is_noticed() -> None:
     assert len(torn_places(MAPPER.front, TRUTH_OF_KEYFRAMES)) == 0
     torn = torn_places(MAPPER.front, bent(3.0))
     assert len(torn) > 0 and (torn[:, 0] < torn[:, 1]).all()
+
+
+def test_who_comes_back_the_other_way_is_compared_by_what_was_seen() -> None:
+    there = np.stack([0.3 * np.arange(50.0), np.zeros(50), np.zeros(50)], axis=1)
+    back = np.stack([there[::-1, 0], np.zeros(50), np.full(50, np.pi)], axis=1)
+    views = np.concatenate([there[:, :2] + (3.0, 0.0), back[:, :2] - (3.0, 0.0)])
+    pairs = neighbours(np.concatenate([there, back]), views)
+    other = pairs[(pairs[:, 0] < 50) & (pairs[:, 1] >= 50)]
+    assert len(other) > 20
+    assert np.hypot(*(views[other[:, 0]] - views[other[:, 1]]).T).max() <= 1.5

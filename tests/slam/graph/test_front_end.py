@@ -56,3 +56,12 @@ def test_only_keyframes_are_stored() -> None:
     for _ in range(300):
         front.add(np.zeros(3), room_ranges((0.0, 0.0, 0.0)))
     assert front.keyframes == [0] and len(front.store.points) == 256 and front.count == 300
+
+
+def test_wheels_that_count_backwards_as_forwards_are_mended() -> None:
+    front = FrontEnd(FAN)
+    for k in range(8):
+        front.add(np.array([0.3 * k, 0.0, 0.0]), room_ranges((1.0 - 0.3 * k, 0.3, 0.1), 6.0, 14.0))
+    moved = [-2.1 * np.cos(0.1), 2.1 * np.sin(0.1), 0.0]
+    np.testing.assert_allclose(between(front.poses[0], front.poses[-1]), moved, atol=0.03)
+    assert min(front.shares[1:]) > 0.5

@@ -1,0 +1,57 @@
+"""Chaski (Shah et al. 2011): acts by plans that are still feasible, and has none when the human has left them."""
+
+from typing import Any
+
+from lidarena.baselines.registry import register
+from lidarena.baselines.workshop.robot_interface import Situation, under_way
+from lidarena.baselines.workshop.stnu import PlanDispatcher
+from lidarena.envs.workshop.compiler.networks import CONSISTENT
+from lidarena.envs.workshop.task import HUMAN
+
+
+@register("chaski", family="workshop")
+class FeasiblePlans(PlanDispatcher):
+    """Takes human and robot for equal partners who both keep to feasible plans.
+
+    Only plans stay whose network is consistent, with everybody free to choose durations within the bounds; the one of
+    least makespan is followed. Where none is left, since the deadline cannot be met any more or an action under way is
+    overdue, there is no plan: the robot waits for one to come back.
+
+    Attributes:
+        stranded: Decisions of this episode without a plan.
+    """
+
+    def __init__(self, env: Any, *, motion: bool = False) -> None:
+        """Make it for a workshop environment.
+
+        Args:
+            env: The environment.
+            motion: Whether ways take time in the plans; Chaski itself takes no notice of space.
+        """
+        super().__init__(env, motion)
+        self.stranded = 0
+
+    def reset(self, seed: int | None = None) -> None:
+        """Begin a new episode."""
+        super().reset(seed)
+        self.stranded = 0
+
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        """Return the number of the robot's next action, or of waiting."""
+        now = Situation.read(info)
+        if not len(now.may):
+            return now.wait
+        snapshot = self.snapshot(now, self._problem, self._motion)
+        plans = self.candidates(now, snapshot)
+        ranked = [] if self._overdue(now) or not len(plans) else self.rank(now, snapshot, plans)
+        feasible = [(category, number) for category, number in ranked if category <= CONSISTENT]
+        if not feasible:
+            self.stranded += 1
+            return now.wait
+        self.category, best = min(feasible, key=lambda one: one[1])
+        return self.next_of(now, plans[best])
+
+    def _overdue(self, now: Situation) -> bool:
+        """Whether the human has taken longer than the bounds of what it does allow."""
+        mine = [action for action in under_way(now).tolist() if now.agent[action] == HUMAN]
+        return any(self.left_of(now, action)[1] < 0.0 for action in mine)

@@ -1,0 +1,131 @@
+"""The picture of a workshop: the floor with the two at work, and beside it who has done what when."""
+
+from typing import TYPE_CHECKING
+
+import cv2
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.envs.workshop.kernels import AWAY, IDLE, WAITING, WALKING, WORKING
+from lidarena.world.canvas import BLUE, GREY, INK, ORANGE, WHITE, Canvas, Colour, draw_floorplan, write
+
+if TYPE_CHECKING:
+    from lidarena.envs.workshop.state import WorkshopCore
+
+_SIDE = 560
+"""Width of the floor [pixels]."""
+_LANE, _HEADER, _LEFT = 34, 48, 74
+AGENT_COLOURS: tuple[Colour, Colour] = (ORANGE, BLUE)
+"""Of human and robot."""
+PHASES = {IDLE: "idle", WALKING: "walks", WAITING: "waits", WORKING: "works", AWAY: "away"}
+"""What an agent does, in a word."""
+
+
+def segments(log: NDArray[np.float64], logged: int, until: float) -> list[tuple[int, int, int, float, float]]:
+    """What each agent did from when to when.
+
+    Args:
+        log: (M, 4) of a world, see ``kernels.Workers``.
+        logged: How many of its rows there are.
+        until: Now [s].
+
+    Returns:
+        Agent, phase, action, begin and end [s], in the order of their beginnings; agents begin idle.
+    """
+    found = []
+    last: list[tuple[int, int, float]] = [(IDLE, -1, 0.0), (IDLE, -1, 0.0)]
+    for agent, phase, action, time in log[:logged].tolist():
+        before, doing, since = last[int(agent)]
+        if time > since:
+            found.append((int(agent), before, doing, since, time))
+        last[int(agent)] = (int(phase), int(action), time)
+    for agent, (phase, action, since) in enumerate(last):
+        if until > since:
+            found.append((agent, phase, action, since, until))
+    return sorted(found, key=lambda one: (one[3], one[0]))
+
+
+def draw_workshop(core: "WorkshopCore", world: int) -> NDArray[np.uint8]:
+    """Draw one world, RGB (height, width, 3)."""
+    task, s = core.task, core.workers
+    scale = _SIDE / (task.plan.bounds[2] - task.plan.bounds[0])
+    canvas = Canvas(task.plan.bounds, scale)
+    draw_floorplan(canvas, task.plan)
+    _draw_locations(core, canvas)
+    for agent, name in enumerate(("human", "robot")):
+        pose = s.poses[world, agent]
+        canvas.robot(pose, task.radii[agent], AGENT_COLOURS[agent])
+        column = int((pose[0] - canvas.bounds[0]) * scale) - 18
+        row = canvas.image.shape[0] - int((pose[1] - canvas.bounds[1]) * scale) - int(task.radii[agent] * scale) - 6
+        write(canvas.image, name, column, row, AGENT_COLOURS[agent])
+    return np.vstack([_headline(core, world), canvas.image, _schedule(core, world)])
+
+
+def _draw_locations(core: "WorkshopCore", canvas: Canvas) -> None:
+    task = core.task
+    for number, name in enumerate(task.locations[:-2]):
+        places = task.grid.points[np.unique(task.arrays.field[number])]
+        canvas.dots(places, GREY, 6.0)
+        canvas.dots(places, WHITE, 4.0)
+        x, y = places.mean(axis=0)
+        column = int((x - canvas.bounds[0]) * canvas.scale) - 4 * len(name)
+        row = canvas.image.shape[0] - int((y - canvas.bounds[1]) * canvas.scale) + 22
+        write(canvas.image, name.replace("_", " "), min(max(column, 12), _SIDE - 9 * len(name)), row, INK)
+
+
+def _headline(core: "WorkshopCore", world: int) -> NDArray[np.uint8]:
+    s, task = core.workers, core.task
+    band = np.full((_HEADER, _SIDE, 3), 255, np.uint8)
+    done = int((s.status[world] == 2).sum())
+    time = float(core.time[world])
+    write(band, f"{task.title}: {done} of {len(task.actions)} done, {time:.0f} s of {task.deadline:.0f} s", 10, 18)
+    for agent, (name, left) in enumerate((("human", 10), ("robot", _SIDE // 2))):
+        phase, action = int(s.phase[world, agent]), int(s.action[world, agent])
+        what = f" ({task.actions[action].replace('_', ' ')})" if action >= 0 else ""
+        write(band, f"{name} {PHASES[phase]}{what}", left, 38, AGENT_COLOURS[agent])
+    return band
+
+
+def _schedule(core: "WorkshopCore", world: int) -> NDArray[np.uint8]:
+    """Gantt chart of the two: strong colours are work, pale ones walking; nothing is idling."""
+    s, task, now = core.workers, core.task, float(core.time[world])
+    band = np.full((2 * _LANE + 40, _SIDE, 3), 255, np.uint8)
+    end = max(1.15 * task.deadline, now)
+    scale = (_SIDE - _LEFT - 12) / end
+
+    def column(time: float) -> int:
+        return _LEFT + int(time * scale)
+
+    for agent, phase, action, begin, until in segments(s.log[world], int(s.logged[world]), now):
+        top = 8 + agent * _LANE
+        colour = shade(AGENT_COLOURS[agent], phase)
+        cv2.rectangle(band, (column(begin), top), (column(until), top + _LANE - 8), colour, -1)
+        if phase == WORKING and action >= 0:
+            fits = max(1, (column(until) - column(begin)) // 8)
+            write(band, str(action + 1)[:fits], column(begin) + 2, top + 17, WHITE)
+    for agent, name in enumerate(("human", "robot")):
+        write(band, name, 10, 26 + agent * _LANE, AGENT_COLOURS[agent])
+    late = column(task.deadline)
+    cv2.line(band, (late, 2), (late, 2 * _LANE + 6), INK, 1)
+    write(band, "deadline", late - 58, 2 * _LANE + 18, INK, 0.36)
+    cv2.line(band, (_LEFT, 2 * _LANE + 6), (_SIDE - 12, 2 * _LANE + 6), GREY, 1)
+    write(band, "0 s", _LEFT - 4, 2 * _LANE + 18, INK, 0.36)
+    write(
+        band,
+        "strong: works (number of the action), pale: walks, grey: waits, dark grey: away",
+        10,
+        2 * _LANE + 34,
+        GREY,
+        0.36,
+    )
+    return band
+
+
+def shade(colour: Colour, phase: int) -> Colour:
+    """Work in the agent's own colour, walking in a pale one, waiting and absence in greys, idling in white."""
+    if phase == WORKING:
+        return colour
+    if phase == WALKING:
+        red, green, blue = (int(255 - 0.4 * (255 - part)) for part in colour)
+        return red, green, blue
+    return {WAITING: (205, 205, 210), AWAY: (120, 120, 125)}.get(phase, WHITE)

@@ -1,0 +1,186 @@
+"""The workshops themselves, batched: where everybody is and what is done; no spaces, rewards or episodes."""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from lidarena.base.errors import ConfigError
+from lidarena.base.random_streams import seed_stream
+from lidarena.envs.worker_threads import on_threads
+from lidarena.envs.workshop.humans import EXTERNAL, choose_human, draw_traits
+from lidarena.envs.workshop.kernels import (
+    IDLE,
+    NEAR,
+    NOTHING,
+    RUNS,
+    Rules,
+    Workers,
+    advance,
+    settle,
+    take_decisions,
+)
+from lidarena.envs.workshop.options import PATIENCE, WorkshopOptions
+from lidarena.envs.workshop.task import HUMAN, ROBOT, WorkshopTask
+from lidarena.envs.workshop.walking import TICK
+from lidarena.world.robots import RobotSpec
+from lidarena.world.team_physics import TeamPhysics
+
+_LOG = 40
+"""Changes of what somebody does that are noted for each action."""
+
+
+class WorkshopCore:
+    """``worlds`` workshops with a human and a robot each.
+
+    World ``i`` depends on nothing but its own generator and actions.
+
+    Args:
+        worlds: Number of worlds.
+        options: Checked keywords.
+
+    Attributes:
+        task: What is to be done.
+        rules: What holds in all worlds.
+        workers: The state.
+        physics: The bodies.
+        human: What the keyword asks for.
+    """
+
+    def __init__(self, worlds: int, options: WorkshopOptions) -> None:
+        task = options.task
+        assert isinstance(task, WorkshopTask)
+        self.task, self.options, self.worlds = task, options, worlds
+        self.human = choose_human(options.human)
+        touch = sum(task.radii)
+        limit = PATIENCE * task.deadline if options.time_limit is None else options.time_limit
+        outside = self.human == EXTERNAL or not isinstance(self.human, str)
+        self.rules = Rules(touch + options.separation, touch, options.wait_period, limit, outside)
+        spec = RobotSpec(radius=touch / 2.0, max_speed=max(task.speeds), substep=0.02)
+        self.physics = TeamPhysics(worlds, 2, spec)
+        self.workers = _no_workers(worlds, len(task.actions), self.physics.poses)
+        self._scratch = [np.zeros((2, 2)) for _ in range(64)]
+        self.rngs: list[np.random.Generator | None] = [None] * worlds
+
+    @property
+    def time(self) -> NDArray[np.float64]:
+        """(worlds,) since the episodes began [s]."""
+        return np.asarray(self.workers.ticks * TICK, np.float64)
+
+    def reset_world(self, world: int, rng: np.random.Generator) -> None:
+        """Begin a new episode in one world; everything random is drawn from its generator."""
+        s, task = self.workers, self.task
+        kind = self.human if isinstance(self.human, str) else "free"
+        traits, likes, refuses = draw_traits("free" if kind == EXTERNAL else kind, rng, task)
+        fresh = _no_workers(1, len(task.actions), np.zeros((1, 2, 3)))
+        for name, array in s._asdict().items():
+            array[world] = getattr(fresh, name)[0]
+        s.traits[world], s.likes[world], s.refuses[world] = traits, likes, refuses
+        s.streams[world] = seed_stream(rng)
+        self.rngs[world] = rng
+        homes = task.grid.points[task.arrays.field[task.arrays.home, [HUMAN, ROBOT]]]
+        poses = [(float(x), float(y), 0.0) for x, y in homes]
+        self.physics.place(world, task.plan, poses)
+
+    def decide(
+        self, agent: int, choices: NDArray[np.int64], asked: NDArray[np.bool_], forced: bool = False
+    ) -> NDArray[np.bool_]:
+        """Let an agent begin an action or, with ``n``, wait, in those worlds where it is asked and has to decide.
+
+        Args:
+            agent: ``HUMAN`` or ``ROBOT``.
+            choices: (worlds,) numbers of actions.
+            asked: (worlds,).
+            forced: Whether an action is begun that is open but not allowed.
+
+        Returns:
+            (worlds,) where it waits instead, since it may not do what it chose.
+        """
+        refused = np.zeros(self.worlds, np.bool_)
+        take_decisions(self.task.arrays, self.workers, self.rules, agent, choices, asked, forced, refused)
+        return refused
+
+    def run(self, active: NDArray[np.bool_]) -> None:
+        """Let the active worlds run until somebody has to decide, or their episodes end."""
+        going = active.copy()
+        task, grid, s, rules = self.task.arrays, self.task.grid, self.workers, self.rules
+        while going.any():
+            counter = np.zeros(1, np.int64)
+            on_threads(
+                min(self.worlds, len(self._scratch)),
+                lambda thread: advance(task, grid, s, rules, going, counter, self._scratch[thread]),  # noqa: B023
+            )
+            going &= s.verdict == NEAR
+            if going.any():
+                self._push(going)
+
+    def _push(self, near: NDArray[np.bool_]) -> None:
+        """Let pymunk move the two of some worlds by a tick."""
+        s, before = self.workers, self.physics.poses.copy()
+        s.commands[~near] = 0.0
+        both = np.repeat(near[:, None], 2, axis=1)
+        self.physics.advance(s.commands, TICK, both)
+        self.physics.poses[~near] = before[~near]
+        moved = np.hypot(*np.moveaxis(self.physics.poses[..., :2] - before[..., :2], 2, 0))
+        s.path[near] += moved[near]
+        s.contacts[near & self.physics.touched_robot.any(axis=1)] += 1
+        settle(self.task.arrays, self.task.grid, s, self.rules, near)
+
+    def arrays(self) -> dict[str, NDArray[Any]]:
+        """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
+        return dict(self.workers._asdict())
+
+    def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
+        """Continue from the arrays of another core with the same options.
+
+        Raises:
+            ConfigError: They are those of another task.
+        """
+        for name, array in self.workers._asdict().items():
+            if saved[name].shape != array.shape:
+                raise ConfigError(f"the saved state is of another task than {self.task.name!r}: {name!r} differs")
+            array[...] = saved[name]
+        for world in range(self.worlds):
+            self.physics.furnish(world, self.task.plan)
+
+
+def _no_workers(worlds: int, count: int, poses: NDArray[np.float64]) -> Workers:
+    """Worlds in which nothing has happened yet."""
+    pair, each = (worlds, 2), (worlds, count)
+    nan = np.full(each, np.nan)
+    return Workers(
+        ticks=np.zeros(worlds, np.int64),
+        poses=poses,
+        phase=np.full(pair, IDLE, np.int64),
+        action=np.full(pair, NOTHING, np.int64),
+        stop=np.zeros(pair, np.int64),
+        left=np.zeros(pair),
+        asleep=np.zeros(pair, np.bool_),
+        wake=np.zeros(pair),
+        deaf=np.zeros(pair, np.bool_),
+        side=np.zeros(pair, np.int64),
+        stuck=np.zeros(pair),
+        backing=np.zeros(worlds),
+        status=np.zeros(each, np.int64),
+        agent=np.full(each, -1, np.int64),
+        begun=nan.copy(),
+        placed=nan.copy(),
+        ended=nan.copy(),
+        worked=nan.copy(),
+        origin=np.zeros(pair),
+        unplanned=np.zeros(each, np.bool_),
+        idle=np.zeros(pair),
+        together=np.zeros(worlds),
+        path=np.zeros(pair),
+        least_gap=np.full(worlds, np.inf),
+        contacts=np.zeros(worlds, np.int64),
+        traits=np.zeros((worlds, 10)),
+        likes=np.zeros(each),
+        refuses=np.zeros(each, np.bool_),
+        streams=np.zeros((worlds, 4), np.uint64),
+        due=np.zeros(pair, np.bool_),
+        verdict=np.full(worlds, RUNS, np.int64),
+        commands=np.zeros((worlds, 2, 2)),
+        log=np.zeros((worlds, _LOG * count, 4)),
+        logged=np.zeros(worlds, np.int64),
+    )
