@@ -10,7 +10,7 @@ def least_distance(options: ExplorationOptions) -> float:
     """Distance to what a beam has hit below which commands are not given [m].
 
     It leaves 0.015 m beside a collision, or 1.5 standard deviations of a noisier lidar: the nearest of many hits is
-    about two of them nearer than what was hit, so that as much again remains.
+    about two of them nearer than what was hit, so that some 0.03 m remain.
     """
     return options.robot.bumper + max(_SLACK, _SIGMAS * options.lidar.noise)
 
