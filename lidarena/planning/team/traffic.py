@@ -14,6 +14,7 @@ from lidarena.planning.team.search_arrays import GraphArrays, PlaceCosts, Reserv
 
 FlatArrays = tuple[NDArray[Any], ...]
 NO_BOUND = np.int64(2**31 - 1)
+_SPARE = 32  # steps that paths may get longer than those that are taken over
 
 
 @merged
@@ -189,19 +190,39 @@ class Traffic:
         self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
         self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
-        self._tables = graph.borrow(self.capacity)
-        self.reserved, self.memory = self._tables
-        self.memory.limits[:2] = NO_BOUND
-        paths, lengths = np.zeros((team, self.capacity), np.int32), np.zeros(team, np.int64)
-        self.delays, self.paths, self.lengths = np.zeros(team, np.int64), paths, lengths
+        self.delays, self.lengths = np.zeros(team, np.int64), np.zeros(team, np.int64)
         self.placed = np.zeros(team, np.bool_)
-        self._team = TeamPaths(
-            ends, self.delays, paths, lengths, self.placed, np.zeros_like(paths), np.zeros_like(lengths)
-        )
+        self._allocate()
 
     def __len__(self) -> int:
         """Number of robots."""
         return len(self.ends)
+
+    def _allocate(self) -> None:
+        """Get tables and paths with room for ``capacity`` steps."""
+        self._tables = self.graph.borrow(self.capacity)
+        self.reserved, self.memory = self._tables
+        self.memory.limits[:2] = NO_BOUND
+        self.paths = np.zeros((len(self), self.capacity), np.int32)
+        kept = np.zeros_like(self.paths), np.zeros_like(self.lengths)
+        self._team = TeamPaths(self.ends, self.delays, self.paths, self.lengths, self.placed, *kept)
+
+    def adopt(self, paths: NDArray[np.int32], lengths: NDArray[np.int64]) -> None:
+        """Take over a plan without conflicts and place everyone; nobody may be placed.
+
+        Args:
+            paths: (k, T) places, one a time step, valid up to ``lengths``.
+            lengths: (k,) steps until each robot stays at its goal.
+        """
+        if paths.shape[1] + _SPARE >= self.capacity:
+            self.graph.give_back(self._tables)
+            self.capacity = paths.shape[1] + paths.shape[1] // 4 + 2 * _SPARE
+            if len(self.layer) > 1:
+                self.layer = np.zeros((1, len(self.graph)), np.int32)
+            self._allocate()
+        self.paths[:, : paths.shape[1]] = paths
+        self.lengths[:] = lengths
+        self.place(np.arange(len(self)))
 
     def close(self) -> None:
         """Empty the tables and give the room for searches back; the paths stay."""
