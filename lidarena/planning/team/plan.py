@@ -87,8 +87,8 @@ def plan_team(
     ends = np.stack([_places(graph, first, "start"), _places(graph, final, "goal")], axis=1)
     surcharge = _surcharge(graph, cell_costs, method)
     deviation_costs = _deviation(deviation, method)
-    _check_reachable(graph, ends, blocked)
     traffic = Traffic(graph, ends, surcharge, timed=deviation_costs is not None)
+    _check_reachable(traffic, blocked)
     plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), deviation_costs)
     traffic.close()
     return plan
@@ -212,10 +212,10 @@ def _places(graph: GridGraph, cells: NDArray[np.int64], kind: str) -> NDArray[np
     return places
 
 
-def _check_reachable(graph: GridGraph, ends: NDArray[np.int64], blocked: NDArray[np.bool_]) -> None:
-    for robot, (start, goal) in enumerate(ends):
-        if graph.ahead(int(goal))[start] < UNREACHABLE:
-            continue
+def _check_reachable(traffic: Traffic, blocked: NDArray[np.bool_]) -> None:
+    graph = traffic.graph
+    for robot in np.flatnonzero(traffic.alone >= int(UNREACHABLE // STEP)).tolist():
+        start, goal = traffic.ends[robot]
         here, there = (tuple(int(x) for x in graph.cells[place]) for place in (start, goal))
         points = grid_graph_of(blocked, graph.connectivity, 0.0)
         if points.ahead(int(points.index[there]))[points.index[here]] < UNREACHABLE:
