@@ -76,5 +76,3 @@ def test_footprints_are_the_same_table_in_rows(apart: float, connectivity: int) 
         assert {int(row[0]): int(row[1]) for row in rows} == {r * stride + c: b for (r, c), b in found.items()}
         for _, bits, ones in rows.tolist():
             assert [ones >> 4 * m & 15 for m in range(9)] == [bits >> m & 1 for m in range(9)]
-            r * stride + c: b for (r, c), b in found.items()
-        }
