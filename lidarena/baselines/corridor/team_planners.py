@@ -107,7 +107,7 @@ class PlannedFleet:
 
     def _refused(self, grid: FloorGrid, error: TeamError) -> TeamPlan:
         paths = [np.empty((0, 2), np.int64)] * self.fleet.robots
-        discs = f"discs of radius {self.fleet.radius:g} to {self.radius:g} m"
+        discs = f"discs of radius {self.radius:g} m, nor for smaller ones down to {self.fleet.radius:g} m,"
         words = f"Nothing was planned for {discs} in cells of {grid.resolution:g} m: {error}."
         return TeamPlan(False, paths, math.inf, 0.0, False, words)
 

@@ -20,7 +20,7 @@ from lidarena.planning.team.team_plan import TeamPlan
 _HELD_UP = 3.0  # a robot that may go on but has not moved for so long is held up (s)
 _DEADLOCK = 8.0  # if nobody has completed a step for so long, nobody will (s)
 _REST = 2.0  # least time between two plans (s)
-_ASIDE = 0.1  # a robot that stops farther than this from its goal is planned around, where it really is (m)
+_ASIDE = 0.2  # a robot that stops farther than this from its goal is planned around, where it really is (m)
 _MOVED = 0.06  # less is no motion: localisation jitters (m)
 _SQUEEZE = (1.0, 0.75, 0.55)  # shares of the planning radius, where robots stand too close for the whole
 

@@ -69,7 +69,7 @@ def test_a_lone_robot_loses_no_time() -> None:
 def test_a_crowd_in_a_maze_keeps_moving() -> None:
     blocked = maze(np.random.default_rng(1))
     found, _ = work(blocked, 64, 150)
-    assert found.reached.any(axis=0).sum() >= 50
+    assert found.reached.any(axis=0).sum() >= 40
     assert found.reached[100:].sum() >= 10  # it has not come to a stand
     again, _ = work(blocked, 64, 20)
     assert np.array_equal(again.cells, found.cells[:21])  # the same, whatever is still to come
