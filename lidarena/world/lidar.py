@@ -217,6 +217,36 @@ def _see_plan(
 
 
 @leaf
+def see_discs(
+    pose: NDArray[np.float64],
+    discs: NDArray[np.float64],
+    radius: float,
+    directions: NDArray[np.float64],
+    lidar: LidarSpec,
+    ranges: NDArray[np.float64],
+) -> None:
+    """Shorten the ranges of a robot's beams that meet discs.
+
+    Args:
+        pose: (3,) of the robot.
+        discs: (n, 2 or more) x, y of their centres [m].
+        radius: Of the discs [m].
+        directions: (2, beams) cos and sin of the beams' angles.
+        lidar: The robot's.
+        ranges: (beams,) changed [m].
+    """
+    fan, reach = _fan_of(lidar), lidar.max_range + radius
+    for k in range(len(ranges)):
+        ranges[k] = 1.0 / ranges[k]
+    for d in range(len(discs)):
+        dx, dy = discs[d, 0] - pose[0], discs[d, 1] - pose[1]
+        if dx * dx + dy * dy < reach * reach:
+            _see_circle(dx, dy, radius, pose[2], fan, directions, ranges)
+    for k in range(len(ranges)):
+        ranges[k] = min(1.0 / ranges[k], lidar.max_range)
+
+
+@leaf
 def _see_robot(
     pose: NDArray[np.float64],
     other: NDArray[np.float64],

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import leaf
 from lidarena.world.floorplan import Floorplan, Pose
 from lidarena.world.robots import RobotSpec
-from lidarena.world.spaces import Spaces, add_robot, glide_one, turn_wheels
+from lidarena.world.spaces import Spaces, add_mover, add_robot, glide_one, turn_wheels
 
 _MARGIN = 0.02
 """Room beside a robot's way within which it might touch what its beams see, or just miss [m]."""
@@ -26,12 +26,14 @@ class Physics(Spaces):
         spec: What they are; None: the TurtleBot3 Burger.
 
     Attributes:
+        movers: Of each world None, or discs that move past whatever the robots do (n, 5): x, y, velocity, radius.
         touched: ``(worlds,)`` whether some robot of a world touched anything in the last ``advance``.
     """
 
     def __init__(self, worlds: int, robots: int = 1, spec: RobotSpec | None = None) -> None:
         super().__init__(worlds, robots, spec)
         self.touched = np.zeros(worlds, np.bool_)
+        self.movers: list[NDArray[np.float64] | None] = [None] * worlds
 
     def place(self, world: int, plan: Floorplan, poses: Sequence[Pose], spec: RobotSpec | None = None) -> None:
         """Put one world's robots at rest, where they touch nothing yet; see ``Spaces.place``."""
@@ -78,6 +80,8 @@ class Physics(Spaces):
             body.position, body.angle = (x, y), theta
             body.velocity, body.angular_velocity = (0.0, 0.0), 0.0
             body.velocity_func = partial(turn_wheels, speed, rate)
+        for mover in () if self.movers[world] is None else np.asarray(self.movers[world]).tolist():
+            add_mover(space, *mover)
         for _ in range(steps + 1):
             space.step(duration / steps)
         self.poses[world] = [(*body.position, math.remainder(body.angle, 2.0 * math.pi)) for body in bodies]
@@ -85,9 +89,10 @@ class Physics(Spaces):
     def _listen(self, world: int, space: pymunk.Space) -> None:
         space.on_collision(begin=partial(self._touch, world))
 
-    def _touch(self, world: int, arbiter: object, space: object, data: object) -> None:
-        """Callback of pymunk: two shapes have met."""
-        self.touched[world] = True
+    def _touch(self, world: int, arbiter: pymunk.Arbiter, space: object, data: object) -> None:
+        """Callback of pymunk: two shapes have met; movers pass through each other, and through what stands."""
+        if any(body.body_type == pymunk.Body.DYNAMIC for body in arbiter.bodies):
+            self.touched[world] = True
 
 
 @leaf

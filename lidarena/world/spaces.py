@@ -108,6 +108,20 @@ def add_robot(space: pymunk.Space, spec: RobotSpec) -> pymunk.Body:
     return body
 
 
+def add_mover(space: pymunk.Space, x: float, y: float, vx: float, vy: float, radius: float) -> pymunk.Body:
+    """Put a disc in a space that moves on at its velocity, whatever it meets; as a robot, from the second step on."""
+
+    def keep_on(body: pymunk.Body, gravity: object, damping: float, dt: float) -> None:
+        body.velocity = vx, vy
+
+    body = pymunk.Body(body_type=pymunk.Body.KINEMATIC)
+    body.position, body.velocity_func = (x, y), keep_on
+    shape = pymunk.Circle(body, radius)
+    shape.friction = 0.0
+    space.add(body, shape)
+    return body
+
+
 def build_space(plan: Floorplan) -> pymunk.Space:
     """A space with the walls and pillars of a floor plan."""
     space = pymunk.Space()

@@ -59,12 +59,16 @@ def test_an_environment_may_have_a_number_of_episodes_and_worlds_of_its_own() ->
     assert len(run_tasks(tasks, workers=1)) == 4
 
 
-def test_only_the_first_episode_is_drawn_and_recorded() -> None:
-    tasks = list_tasks(config_of(*TWO, videos="mp4"), Path("videos"))
+def test_only_the_first_episode_is_drawn_played_and_recorded() -> None:
+    tasks = list_tasks(config_of(*TWO, videos="mp4", record=True), Path("out"))
+    assert [task.keep_replay for task in tasks] == [True, False, False] * 2
+    bags = [task.bag for task in tasks if task.policy.title == "driver"]
+    assert bags == [Path("out/bags/Corridor/driver.mcap"), None, None]
     assert [task.keep_picture for task in tasks] == [True, False, False] * 2
     videos = {task.seed: task.video for task in tasks if task.policy.title == "hesitant"}
-    assert videos == {10: Path("videos/Corridor/hesitant.mp4"), 11: None, 12: None}
-    assert not any(task.keep_picture or task.video for task in list_tasks(config_of(*TWO, pictures=False), Path("v")))
+    assert videos == {10: Path("out/videos/Corridor/hesitant.mp4"), 11: None, 12: None}
+    plain = list_tasks(config_of(*TWO, pictures=False, report=False), Path("out"))
+    assert not any(task.keep_picture or task.video or task.keep_replay or task.bag for task in plain)
 
 
 def test_results_do_not_depend_on_the_number_of_processes() -> None:

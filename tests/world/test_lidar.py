@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.world.floorplan import Floorplan
-from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise
+from lidarena.world.lidar import Lidar, LidarSpec, add_range_noise, see_discs
 from lidarena.world.load import load_floorplan
 
 PLANS = ["env1", "env2", "env3", "env4", "willow_lobby", "turtlebot3_world", "aws_small_house", "maze:3"]
@@ -108,3 +108,20 @@ def test_noise_has_the_stated_deviation_and_leaves_missing_returns() -> None:
     assert (scans[0, 0, ::2] == 3.5).all()
     assert scans[0, 0, 1::2].std() == pytest.approx(0.01, rel=0.05)
     assert scans[0, 0, 1::2].mean() == pytest.approx(2.0, abs=5e-4)
+
+
+@settings(max_examples=40, deadline=None)
+@given(st.floats(-6.0, 6.0), st.floats(-6.0, 6.0), st.floats(-3.0, 3.0), st.floats(0.05, 1.0))
+def test_discs_are_seen_as_pymunk_sees_them(x: float, y: float, theta: float, radius: float) -> None:
+    spec = LidarSpec(beams=24, max_range=5.0)
+    space = pymunk.Space()
+    space.add(pymunk.Circle(space.static_body, radius, (x, y)))
+    ranges = np.full(24, spec.max_range)
+    ranges[3] = 0.01  # what is nearer stays
+    see_discs(np.array([0.0, 0.0, theta]), np.array([[x, y, 9.0, 9.0]]), radius, spec.directions, spec, ranges)
+    assert ranges[3] == pytest.approx(0.01)
+    if math.hypot(x, y) <= radius + 1e-6:
+        return
+    for k, angle in enumerate(spec.angles + theta):
+        if k != 3:
+            assert ranges[k] == pytest.approx(pymunk_range(space, 0.0, 0.0, float(angle), 5.0), abs=2e-3)

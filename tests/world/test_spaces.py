@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from lidarena.world.load import load_floorplan
 from lidarena.world.physics import Physics
 from lidarena.world.robots import RobotSpec
-from lidarena.world.spaces import Spaces, add_robot, build_space, chord, glide_one
+from lidarena.world.spaces import Spaces, add_mover, add_robot, build_space, chord, glide_one
 from lidarena.world.team_physics import TeamPhysics
 
 OFFICE, MAZE = load_floorplan("office"), load_floorplan("env1")
@@ -66,3 +66,14 @@ def test_gliding_keeps_the_heading_within_a_turn(heading: float, speed: float, r
     assert -math.pi <= pose[2] <= math.pi
     assert math.cos(pose[2] - heading - 0.5 * rate) == pytest.approx(1.0)
     assert math.hypot(pose[0] - 1.0, pose[1] - 2.0) <= 0.5 * abs(speed) + 1e-9
+
+
+def test_a_mover_goes_on_at_its_speed_whatever_it_meets() -> None:
+    space = build_space(load_floorplan("env1"))
+    robot = add_robot(space, RobotSpec(radius=0.1))
+    robot.position = (0.35, 0.0)
+    mover = add_mover(space, 0.0, 0.0, 1.0, 0.0, 0.2)
+    for _ in range(51):
+        space.step(0.01)
+    assert mover.position.x == pytest.approx(0.5, abs=1e-6) and mover.position.y == 0.0
+    assert robot.position.x > 0.6  # it was pushed on

@@ -7,6 +7,7 @@ from lidarena.baselines.arena import (  # they register themselves
     apf_improved_lidar,
     apf_lidar,
     astar,
+    velocity_obstacles,
 )
 
-__all__ = ["apf", "apf_global", "apf_improved", "apf_improved_lidar", "apf_lidar", "astar"]
+__all__ = ["apf", "apf_global", "apf_improved", "apf_improved_lidar", "apf_lidar", "astar", "velocity_obstacles"]

@@ -1,5 +1,5 @@
 """Planners of teams as policies of the corridor family."""
 
-from lidarena.baselines.corridor import team_planners, team_search  # they register themselves
+from lidarena.baselines.corridor import lifelong, team_planners, team_search  # they register themselves
 
-__all__ = ["team_planners", "team_search"]
+__all__ = ["lifelong", "team_planners", "team_search"]

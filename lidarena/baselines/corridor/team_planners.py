@@ -17,6 +17,8 @@ from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.plan import Method, plan_team
 from lidarena.planning.team.team_plan import TeamPlan
 
+_SPARE = (0.05, 0.02, 0.0)
+"""Room beside the robots that discs have where larger ones do not fit [m]."""
 ROOM = 0.2
 """Robots are planned as discs of at least this radius [m]."""
 _KEEPS_UP = 0.4
@@ -65,7 +67,7 @@ class PlannedFleet:
         if not 0.0 < time_limit <= 3600.0:
             raise ConfigError(f"time_limit = {time_limit} s is out of range; more than 0 and at most 3600 is allowed")
         self.step = step * max(1.0, _KEEPS_UP / self.fleet.robot.max_speed)
-        self.time_limit = time_limit
+        self.time_limit, self._wanted_radius = time_limit, self.radius
         self.reset()
 
     def reset(self, seed: int | None = None) -> None:
@@ -73,6 +75,7 @@ class PlannedFleet:
         self.fleet.begin()
         self.seed = 0 if seed is None else seed
         self.finished, self.message = False, ""
+        self.radius = self._wanted_radius
         self.plan: TeamPlan | None = None
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
@@ -92,15 +95,21 @@ class PlannedFleet:
         return self.fleet.actions(self.drive(state, info), state)
 
     def _plan_or_say_why(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
-        """Plan; where the team has no room for the discs that are planned for, the message says so."""
-        try:
-            return self.plan_from(state, grid)
-        except TeamError as error:
-            paths = [np.empty((0, 2), np.int64)] * self.fleet.robots
-            words = (
-                f"Nothing was planned for discs of radius {self.radius:g} m in cells of {grid.resolution:g} m: {error}."
-            )
-            return TeamPlan(False, paths, math.inf, 0.0, False, words)
+        """Plan, for smaller discs where the team has no room for the wanted ones; without any, the message says so."""
+        for spare in (math.inf, *_SPARE):
+            self.radius = min(self._wanted_radius, self.fleet.radius + spare)
+            try:
+                return self.plan_from(state, grid)
+            except TeamError as error:
+                refusal = error
+        self.radius = self._wanted_radius
+        return self._refused(grid, refusal)
+
+    def _refused(self, grid: FloorGrid, error: TeamError) -> TeamPlan:
+        paths = [np.empty((0, 2), np.int64)] * self.fleet.robots
+        discs = f"discs of radius {self.radius:g} m, nor for smaller ones down to {self.fleet.radius:g} m,"
+        words = f"Nothing was planned for {discs} in cells of {grid.resolution:g} m: {error}."
+        return TeamPlan(False, paths, math.inf, 0.0, False, words)
 
     def plan_from(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan from where the robots are."""

@@ -1,5 +1,6 @@
 """Prioritized search in the world: the plan's order is kept, robots that are late or blocked are planned around."""
 
+import math
 from typing import Any
 
 import numpy as np
@@ -19,8 +20,21 @@ from lidarena.planning.team.team_plan import TeamPlan
 _HELD_UP = 3.0  # a robot that may go on but has not moved for so long is held up (s)
 _DEADLOCK = 8.0  # if nobody has completed a step for so long, nobody will (s)
 _REST = 2.0  # least time between two plans (s)
+_ASIDE = 0.2  # a robot that stops farther than this from its goal is planned around, where it really is (m)
 _MOVED = 0.06  # less is no motion: localisation jitters (m)
 _SQUEEZE = (1.0, 0.75, 0.55)  # shares of the planning radius, where robots stand too close for the whole
+
+
+def block_disc(blocked: NDArray[np.bool_], grid: FloorGrid, place: NDArray[np.float64], radius: float) -> None:
+    """Block the cells (rows, cols) that a robot at x, y [m] covers: its own and those whose centre is in it."""
+    row, col = grid.cells(place)[0]
+    blocked[row, col] = True
+    reach = math.ceil(radius / grid.resolution)
+    rows, cols = np.mgrid[row - reach : row + reach + 1, col - reach : col + reach + 1].reshape(2, -1)
+    inside = (rows >= 0) & (cols >= 0) & (rows < blocked.shape[0]) & (cols < blocked.shape[1])
+    around = np.stack([rows, cols], axis=1)[inside]
+    covered = around[np.hypot(*(grid.points(around) - place).T) < radius]
+    blocked[covered[:, 0], covered[:, 1]] = True
 
 
 @register("prioritized_search", family="corridor")
@@ -70,6 +84,7 @@ class SearchingFleet(PlannedFleet):
         self._anchor = np.full((robots, 3), np.inf)  # where each robot was when it last moved
         self._moved_at, self._stepped_at = np.zeros(robots), 0.0
         self._around = np.zeros(robots, np.bool_)  # who was planned around
+        self._placed = np.zeros(robots, np.bool_)  # who arrived beside its goal, and was planned around since
 
     def extras(self, grid: FloorGrid) -> dict[str, Any]:
         """Wall costs, and the bounds of the search."""
@@ -129,7 +144,9 @@ class SearchingFleet(PlannedFleet):
             waited_for[other] = True
         in_the_way = held_up & waited_for & ~self._around
         freed = self._around & ~held_up & state.active
-        return bool(in_the_way.any() or freed.any() or self._deadlocked(state))
+        aside = state.arrived & ~self._placed & (np.hypot(*(state.poses[:, :2] - state.goals).T) > _ASIDE)
+        self._placed |= aside
+        return bool(in_the_way.any() or freed.any() or aside.any() or self._deadlocked(state))
 
     def _deadlocked(self, state: FleetState) -> bool:
         return state.time - max(self._stepped_at, self._planned_at) > _DEADLOCK
@@ -157,7 +174,7 @@ class SearchingFleet(PlannedFleet):
         cells, goals = grid.cells(state.poses[:, :2]), grid.cells(state.goals)
         blocked = grid.blocked.copy()
         for robot in set(range(self.fleet.robots)) - set(movers.tolist()):
-            blocked[tuple(cells[robot])] = True
+            block_disc(blocked, grid, state.poses[robot, :2], self.fleet.radius)
         try:
             plan = plan_team(
                 blocked, cells[movers], goals[movers], self.method, 8, grid.in_cells(radius), self.time_limit,

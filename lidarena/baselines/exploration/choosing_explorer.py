@@ -11,6 +11,7 @@ from lidarena.base.keyword_checks import check_range
 from lidarena.baselines.exploration.robot_interface import Robot
 from lidarena.envs.exploration.goal_choice.explorers import driver_settings, explorer_settings
 from lidarena.envs.exploration.goal_choice.features import FEATURES, Circumstances, describe
+from lidarena.envs.exploration.goal_choice.options import GoalChoiceOptions
 from lidarena.envs.exploration.options import ExplorationOptions
 from lidarena.planning.driving.explorer import (
     CHOOSES,
@@ -47,7 +48,7 @@ class ChoosingExplorer:
         candidates: int = 24,
         places: int = 6,
         least_frontier: float = 0.2,
-        choice_period: float = 1.0,
+        choice_period: float = GoalChoiceOptions.choice_period,
     ) -> None:
         """Make it for an exploration environment.
 
@@ -76,11 +77,12 @@ class ChoosingExplorer:
 
     def act(self, observation: Any, info: Mapping[str, Any]) -> Any:
         """Return the next action of the environment."""
+        # copies, since kernels are compiled once for arrays that may be written to, as those of the batch are
         senses = Perceptions(
-            np.ascontiguousarray(info["map"], np.int8)[None],
-            np.asarray(info["origin"], np.float64)[None],
-            np.asarray(info["pose"], np.float64)[None],
-            np.asarray(info["scan"], np.float32)[None],
+            np.array(info["map"], np.int8)[None],
+            np.array(info["origin"], np.float64)[None],
+            np.array(info["pose"], np.float64)[None],
+            np.array(info["scan"], np.float32)[None],
         )
         explorers = self._hired(senses, float(info["resolution"]))
         log_d = math.log(max(float(info["d_optimality"]), 1e-9))

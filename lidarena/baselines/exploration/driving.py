@@ -2,9 +2,9 @@
 
 The driver reads the map and the pose from ``info`` and nothing else but the beams. What they have hit nearby lately
 counts as occupied even where the map says otherwise: a thin leg that the map has a hand's breadth beside is where the
-beams see it, not where older scans outvote them. It plans a path with A* on the
-inflated map, lets a :class:`PathFollower` turn it into commands, and looks at the
-newest map before every single command.
+beams see it, not where older scans outvote them. It plans a path with A* on the inflated map, lets a
+:class:`PathFollower` turn it into commands, and compares what is left of them with the hits themselves before every
+single command (:mod:`lidarena.planning.grid.guard`).
 """
 
 import math
@@ -20,8 +20,10 @@ from numpy.typing import NDArray
 from lidarena.baselines.exploration.robot_interface import Robot
 from lidarena.planning.grid.frontiers import nearest_cell
 from lidarena.planning.grid.grid_search import find_path
+from lidarena.planning.grid.guard import GUARDED, carried, is_safe, nearby, turn_in_place, way_out
 from lidarena.planning.grid.inflation import Inflation, clearance, inflate, open_start
 from lidarena.planning.grid.path_following import PathFollower, blocked_ahead
+from lidarena.planning.grid.steering import move
 from lidarena.planning.grid.surroundings import Surroundings
 
 _NEARBY = 1.2  # half the side of the window that is looked at before every command (m)
@@ -76,10 +78,13 @@ class Driver:
     def reset(self) -> None:
         """Forget the goal and everything planned."""
         self._follower = PathFollower.with_extra_room(self.robot.commands, self._extra)
+        self._follower.keep = self.robot.least_distance
         self.stop()
         self._info: Mapping[str, Any] = {}
         self._observation: Any = None
         self._hits: deque[NDArray[np.float64]] = deque(maxlen=max(1, round(_REMEMBERED / self.robot.period)))
+        self._reckoned, self._given = np.zeros(3), -1  # where the commands should have taken it, as ``_hits`` see it
+        self._scanned, self._scan_sum, self._turning = np.zeros(3), math.nan, -1
 
     def stop(self) -> None:
         """Give up the goal."""
@@ -91,9 +96,27 @@ class Driver:
         """Take in the environment's newest observation and info."""
         self._observation, self._info = self.robot.beams_in(observation, info), info
         self.pose = np.array(info["pose"], dtype=np.float64)
-        self._hits.append(self.robot.hits(self._observation, self.pose, _NEAR_HITS + self._extra))
+        if self._given >= 0:
+            move(self._reckoned, self.robot.commands.moves[self._given])
+            self._given = -1
+        total = self.robot.sum_of_beams(self._observation)
+        if total != self._scan_sum:
+            self._scan_sum, self._scanned = total, self._reckoned.copy()
+            self._hits.append(self.robot.hits(self._observation, self._reckoned, _NEAR_HITS + self._extra))
+        else:
+            self._hits.append(np.empty((0, 2)))  # a slow lidar's scan of before
         self._around = self._nearby()
         self._is_clear = self._follower.is_clear(self.pose, self._around)
+        self._follower.points = self._points_around()
+
+    def _points_around(self) -> NDArray[np.float64]:
+        """What the robot must keep clear of, (n, 2) in its own frame; see ``driving.survey.points_around``."""
+        seen = carried(self.robot.hits(self._observation, np.zeros(3), GUARDED), np.zeros(3), self._scanned)
+        if self.robot.sees_what_is_near(self._observation):
+            return np.asarray(nearby(seen, self._reckoned))
+        points = nearby(np.concatenate([seen, *list(self._hits)[:-1]]), self._reckoned)
+        closed = self._around.points(np.argwhere(self._occupied))
+        return np.concatenate([points, nearby(closed, self.pose)])
 
     def _nearby(self) -> Surroundings:
         """Clearances in a window around the robot, from the newest map."""
@@ -103,14 +126,17 @@ class Driver:
         half = math.ceil((_NEARBY + self._extra) / resolution)
         rows, cols = _overlap(row, half, occupancy.shape[0]), _overlap(col, half, occupancy.shape[1])
         origin = (x + cols.start * resolution, y + rows.start * resolution)
-        return self._surroundings(self._with_hits(occupancy[rows, cols], origin, resolution), origin)
+        marked = self._with_hits(occupancy[rows, cols], origin, resolution)
+        self._occupied = marked >= self.inflation.occupied_from
+        return self._surroundings(marked, origin)
 
     def _with_hits(
         self, occupancy: NDArray[np.int8], origin: tuple[float, float], resolution: float
     ) -> NDArray[np.int8]:
         """A copy of a part of the map in which what the beams have hit lately is occupied."""
         marked = np.array(occupancy, dtype=np.int8, order="C")
-        cells = np.floor((np.concatenate(self._hits) - origin) / resolution).astype(np.int64)
+        hits = carried(np.concatenate(self._hits), self._reckoned, self.pose)
+        cells = np.floor((hits - origin) / resolution).astype(np.int64)
         inside = ((cells >= 0) & (cells < (marked.shape[1], marked.shape[0]))).all(axis=1)
         marked[cells[inside, 1], cells[inside, 0]] = 100
         return marked
@@ -198,13 +224,23 @@ class Driver:
         return not self._follower.can_loiter(self.pose, self._around)
 
     def action(self) -> Any:
-        """Return the next action: the next planned command if map and beams say that it is safe, else a turn."""
-        if self._follower.is_clear(self.pose, self._around):  # commands may be newer than what sense() checked
-            command = self._follower.next()
-            if command is not None and not self.robot.would_touch(command, self._observation):
-                return self.robot.action(command)
-        self._follower.clear()
-        return self.robot.action(self._follower.loiter(self.pose, self._around))
+        """Return the next action: the next planned command if beams say that it is safe, else a turn or the way out."""
+        follower, commands = self._follower, self.robot.commands
+        points, keep, room = follower.points, follower.keep, follower.margin
+        if len(follower.planned) and not is_safe(points, commands, follower.planned, keep):
+            follower.clear()
+        if not len(follower.planned):
+            self._turning = turn_in_place(points, commands, self._turning, keep, room)
+            if self._turning >= 0:
+                return self._give(self._turning)
+            follower.follow(way_out(points, commands, keep))
+        self._turning = -1
+        command = follower.next()
+        return self._give(turn_in_place(points, commands, -1, 0.0, room) if command is None else command)
+
+    def _give(self, command: int) -> Any:
+        self._given = int(command)
+        return self.robot.action(self._given)
 
 
 def _overlap(centre: int, half: int, size: int) -> slice:

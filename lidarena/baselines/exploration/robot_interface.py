@@ -1,6 +1,5 @@
 """The exploration robot as a baseline sees it: its commands, its beams and the action space they stand for."""
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -9,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.jit import kernel
 from lidarena.envs.exploration.actions import box_action, discrete_commands
 from lidarena.envs.exploration.observations import ENTROPY
 from lidarena.envs.exploration.options import ROBOT, ExplorationOptions
+from lidarena.envs.exploration.room import least_distance, sees_what_is_near
 from lidarena.envs.exploration.scan_sectors import FRONT_ANGLES, SECTORS, sector_angles
 from lidarena.envs.registration import owner_of
 from lidarena.planning.grid.steering import Commands
@@ -20,14 +19,10 @@ from lidarena.planning.grid.steering import Commands
 _SPEED, _TURN_RATE = 0.5, 1.0
 """With continuous actions the robot is driven no faster than DA-SLAM's [m/s, rad/s]."""
 _STEERED = np.array([(1.0, 0.0), (0.0, 1.0), (0.0, -1.0), (1.0, 0.5), (1.0, -0.5)])
-_SLACK = 0.03
-"""Room beside the collision distance that commands leave, three sigma of DA-SLAM's lidar or of another one's [m]."""
 _NEARNESS = ("frontier_histogram", "frontier_arcs")
 """Observations that begin with how near the nearest hit in each sector is."""
 _KNOWN = ("da_slam", "sectors", *_NEARNESS, "map")
 """Observations that hold beams."""
-_PIECE = 0.1
-"""Commands are compared with hits at points of their way so far apart [m]."""
 
 
 class Robot:
@@ -66,6 +61,19 @@ class Robot:
         """How much more room than DA-SLAM's robot it needs beside it (m)."""
         return self.spec.bumper - ROBOT.bumper
 
+    @property
+    def least_distance(self) -> float:
+        """Distance to what a beam has hit below which commands are not given (m)."""
+        return least_distance(self.options)
+
+    def sees_what_is_near(self, observation: Any) -> bool:
+        """Return whether the beams that an observation holds hit all that is near."""
+        return isinstance(observation, Mapping) and "scan" in observation and sees_what_is_near(self.options)
+
+    def sum_of_beams(self, observation: Any) -> float:
+        """Return the sum of the beams that an observation holds: it tells whether they are those of before."""
+        return float(self._beams(observation)[0].sum())
+
     def action(self, command: int) -> Any:
         """Return the environment's action for a command."""
         return command if self._discrete else box_action(self.spec, *self.commands.velocities[command].tolist())
@@ -78,15 +86,6 @@ class Robot:
         if "scan" not in info:
             return observation
         return {"scan": np.asarray(info["scan"], np.float64) / self._lidar.max_range}
-
-    def would_touch(self, command: int, observation: Any) -> bool:
-        """Return whether the beams that were observed say that a command ends in a collision.
-
-        A command that takes the robot away from what a beam has hit is never held against that beam.
-        """
-        dx, dy = self.commands.moves[command, :2].tolist()
-        keep = self.spec.bumper + max(_SLACK, 3.0 * self._lidar.noise)
-        return bool(_touches(*self._beams(observation), self._lidar.max_range, keep, dx, dy))
 
     def hits(self, observation: Any, pose: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
         """Return where the observed beams hit something, (n, 2) x, y (m).
@@ -120,30 +119,3 @@ class Robot:
             touch = self.spec.contact_distance / self._lidar.max_range
             return np.round(touch / numbers[:SECTORS], 5), sector_angles()
         return numbers[: len(FRONT_ANGLES)], np.array(FRONT_ANGLES)
-
-
-@kernel
-def _touches(
-    scan: NDArray[np.float64], angles: NDArray[np.float64], longest: float, keep: float, dx: float, dy: float
-) -> bool:
-    """Whether the way (dx, dy) leads nearer than ``keep`` to what a beam hit, and nearer than before.
-
-    Args:
-        scan: (n,) ranges over the longest.
-        angles: (n,) of the beams [rad].
-        longest: Range (m).
-        keep: (m).
-        dx: Ahead (m).
-        dy: To the left (m).
-    """
-    pieces = max(1, math.ceil(math.hypot(dx, dy) / _PIECE - 1e-6))
-    for i in range(scan.shape[0]):
-        before = scan[i] * longest
-        if 0.0 < scan[i] < 1.0:
-            x, y = before * math.cos(angles[i]), before * math.sin(angles[i])
-            for k in range(1, pieces + 1):
-                share = k / pieces
-                after = math.hypot(x - share * dx, y - share * dy)
-                if after < keep and after < before:
-                    return True
-    return False

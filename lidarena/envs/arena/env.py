@@ -75,8 +75,9 @@ class ArenaEnv(SingleWorld):
     ``clearance`` [m], the least distance between the robot and anything on the last step, ``time`` [s], ``collision``,
     ``success``, ``radius`` of the robot [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the
     world: ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min,
-    x_max, y_max [m]. With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and
-    ``optimal_time`` (BARN's, [s]; infinite elsewhere), for evaluation.
+    x_max, y_max [m], and where obstacles move ``moving`` (M, 5) x, y, velocity, radius. With ``expose_truth=True``
+    ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and ``optimal_time`` (BARN's, [s]; infinite
+    elsewhere), for evaluation.
 
     Gymnasium's own ``SyncVectorEnv`` and ``AsyncVectorEnv`` stack the infos of their worlds, which cannot be done with
     ``circles`` where arenas have different numbers of them: take ``make_vec``'s ``vector_entry_point``, or
@@ -91,6 +92,7 @@ class ArenaEnv(SingleWorld):
     | `arena` | str, arena, plan, generator or list | `"random"` | where: one, a family, or a list of these |
     | `density` | float or list | `0.15` | share of the room that circles of `"random"` arenas cover |
     | `path` | str or None | `None` | the BARN file, for `"barn"` arenas |
+    | `moving` | int, dict or spec | `None` | obstacles that move: number, speed, radius, kind; see ``MovingSpec`` |
     | `start` | (x, y) or None | `None` | instead of the arena's own [m] |
     | `goal` | (x, y) or None | `None` | instead of the arena's own [m]; a floor plan has none |
     | `arenas` | int | `4096` | how many different arenas of a family episodes draw from |

@@ -135,6 +135,11 @@ class ArenaEpisodes:
         known = {"circles": core.circles.copy(), "bounds": core.bounds.copy()}
         if self.options.knowledge == "map":
             info |= known
+        if core.moving.number:
+            moving = np.stack([core.moving.discs(world) for world in range(core.worlds)])
+            known["moving"] = moving
+            if self.options.knowledge == "map":
+                info["moving"] = moving.copy()
         if self.options.expose_truth:
             own = {name: info[name].copy() for name in ("pose", "path_length")}
             info["truth"] = known | own | {"optimal_time": core.optimal_time.copy()}

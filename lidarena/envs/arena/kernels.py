@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
-from lidarena.world.lidar import NO_OUTLINE, Scanner, add_range_noise, cast_beams, scan_is_due
+from lidarena.world.lidar import NO_OUTLINE, Scanner, add_range_noise, cast_beams, scan_is_due, see_discs
 from lidarena.world.map_geometry import MapGeometry
 
 
@@ -115,6 +115,8 @@ def sense(
     period: float,
     scanner: Scanner,
     streams: NDArray[np.uint64],
+    discs: NDArray[np.float64],
+    disc_radius: float,
     measurements: Measurements,
 ) -> None:
     """Measure in worlds first … last - 1 after a step.
@@ -128,11 +130,15 @@ def sense(
         period: Duration of the step [s].
         scanner: The lidars; each world is a plan of its own.
         streams: (W, 4) random streams.
+        discs: (W, M, 4) moving obstacles: x, y [m], velocity.
+        disc_radius: Of them [m].
         measurements: Output.
     """
     lidar, geometry, directions = scanner.lidar, scanner.geometry, scanner.directions
     cast_beams(first, last, poses, scanner.plan, 0.0, NO_OUTLINE, geometry, directions, lidar, measurements.ranges)
     for w in range(first, last):
+        if discs.shape[1]:
+            see_discs(poses[w, 0], discs[w], disc_radius, directions, lidar, measurements.ranges[w, 0])
         if scan_is_due(w, period, lidar, measurements.since_scan):
             add_range_noise(w, w + 1, lidar, streams, measurements.ranges, measurements.scans)
         dx, dy = poses[w, 0, 0] - before[w, 0, 0], poses[w, 0, 1] - before[w, 0, 1]

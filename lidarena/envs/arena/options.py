@@ -9,6 +9,7 @@ import numpy as np
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
+from lidarena.envs.arena.moving import MovingSpec
 from lidarena.envs.arena.rewards import REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
@@ -52,6 +53,8 @@ class OwnSize(RobotSpec):
     """A robot as large as each arena's own."""
 
 
+NOTHING_MOVES = MovingSpec()
+"""No moving obstacles."""
 ROBOT = OwnSize(max_speed=1.0, substep=0.03)
 """Drives at 1 m/s; its size is each arena's own."""
 LIDAR = ToScale(beams=36, max_range=30.0, noise=0.0)
@@ -64,6 +67,7 @@ class ArenaKeywords(TypedDict, total=False):
     arena: ArenaSpec | Sequence[ArenaSpec]
     density: float | Sequence[float]
     path: str | None
+    moving: MovingSpec | Mapping[str, Any] | int | None
     start: Sequence[float] | None
     goal: Sequence[float] | None
     arenas: int
@@ -95,6 +99,9 @@ class ArenaOptions:
             ``Floorplan`` for every episode; or a list of these.
         density: Share of the room that the circles of ``"random"`` arenas cover, or a list of shares to draw from.
         path: The BARN file, for ``"barn"`` and ``"barn:INDEX"``.
+        moving: Obstacles that move: how many, or a mapping of ``number``, ``speed``, ``radius`` and ``kind``, see
+            :class:`lidarena.envs.arena.moving.MovingSpec`. The lidar sees them; with ``knowledge="map"``
+            ``info["moving"]`` tells where they are and how they move.
         start: x, y instead of the arena's own [m].
         goal: x, y instead of the arena's own [m]; a floor plan has none and needs it.
         arenas: How many different ``"random"`` arenas, U traps and arenas of a generator the episodes draw from. Their
@@ -130,6 +137,7 @@ class ArenaOptions:
     arena: ArenaSpec | Sequence[ArenaSpec] = "random"
     density: float | Sequence[float] = DENSITY
     path: str | None = None
+    moving: MovingSpec = NOTHING_MOVES
     start: Sequence[float] | None = None
     goal: Sequence[float] | None = None
     arenas: int = 4096
@@ -160,7 +168,8 @@ class ArenaOptions:
         choose_reward(options.reward, REWARDS)
         choose_observer(options.observation, OBSERVATIONS)
         options._check_arenas()
-        return replace(options, robot=_robot_of(given.get("robot")), lidar=_lidar_of(given.get("lidar")))
+        moving = MovingSpec.checked(given.get("moving"))
+        return replace(options, moving=moving, robot=_robot_of(given.get("robot")), lidar=_lidar_of(given.get("lidar")))
 
     def at_scale(self, scale: float, radius: float) -> "ArenaOptions":
         """The same for arenas of a scale, with the lidar, periods and distances that were left to it.
@@ -178,6 +187,7 @@ class ArenaOptions:
         if isinstance(robot, OwnSize):
             robot = replace(_as(RobotSpec, robot), radius=radius)
         check_lidar(lidar, period)
+        self.moving.check_seen(lidar, period, robot.max_speed)
         return replace(self, robot=robot, lidar=lidar, decision_period=period, goal_radius=self.goal_radius or scale)
 
     def _check_arenas(self) -> None:

@@ -77,6 +77,8 @@ def draw_arena(core: "ArenaCore", recorder: ArenaRecorder, world: int) -> NDArra
         for x, y, radius in arena.circles:
             canvas.dots(np.array([[x, y]]), INK, radius * scale + 1.0)
             canvas.dots(np.array([[x, y]]), _OBSTACLE, radius * scale)
+    for x, y, _, _, radius in core.moving.discs(world).tolist():
+        canvas.dots(np.array([[x, y]]), MAGENTA, radius * scale)
     plan, before = recorder.plan(world, land)
     if before is not None:
         canvas.line(before, ORANGE, 2)

@@ -8,6 +8,14 @@ from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way_gap
+from lidarena.envs.arena.moving import (
+    KINDS,
+    choose_velocities,
+    drive_moving,
+    meet_moving,
+    moving_obstacles,
+    place_moving,
+)
 from lidarena.envs.arena.options import ArenaOptions, OwnSize
 from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
 from lidarena.world.floorplan import Floorplan
@@ -34,6 +42,7 @@ class ArenaCore:
         robot: The robots, see ``ArenaOptions``.
         beam: Their lidars.
         physics: Poses and contacts.
+        moving: Obstacles that move.
         scenarios: The arena of each world.
         measurements: What is measured of it.
         step_length: Driven in a decision period [m].
@@ -58,6 +67,7 @@ class ArenaCore:
         self.period, self.goal_radius = self.options.decision_period or scale, self.options.goal_radius or scale
         self.step_length = self.robot.max_speed * self.period
         self.physics = Physics(worlds)
+        self.moving = moving_obstacles(worlds, options.moving, scale)
         self._bodies: dict[float, RobotSpec] = {}
         self.directions = self.beam.directions
         self._allocate()
@@ -131,12 +141,25 @@ class ArenaCore:
         scenario = self.scenarios[world]
         assert scenario is not None
         self._place(world, scenario.plan, scenario.plan.start)
+        if self.moving.number:
+            self._place_moving(world, rng)
         self.turns[world] = 0.0
         self.measurements.path_length[world] = 0.0
         self.measurements.since_scan[world] = first_scan(self.period, self.beam)
         self._sense(self.physics.poses, world, world + 1)
         x, y = scenario.arena.start
         self.measurements.gap[world] = way_gap(x, y, x, y, world, self.geometry) - self.radii[world]
+
+    def _place_moving(self, world: int, rng: np.random.Generator) -> None:
+        """Draw one world's moving obstacles."""
+        spec, moving = self.options.moving, self.moving
+        moving.streams[world] = seed_stream(rng)
+        mixed = spec.kind == "mixed"
+        moving.kinds[world] = rng.integers(len(KINDS) - 1, size=moving.number) if mixed else KINDS.index(spec.kind)
+        start, keep = self.physics.poses[world, 0, :2], 3.0 * self.step_length
+        keep += float(self.radii[world] + moving.radius[0])
+        bounds = self.bounds[world]
+        place_moving(world, start, self.goals[world], keep, *spec.speeds, bounds, self.geometry, moving)
 
     def _take_scenario(self, world: int) -> None:
         scenario = self.generator.scenario(*self.drawn[world].tolist())
@@ -165,6 +188,7 @@ class ArenaCore:
         self._place(
             world, vicinity(scenario.plan, x, y, 1.1 * self.step_length + 1.1 * float(self.radii[world])), (x, y, theta)
         )
+        self.physics.movers[world] = self.moving.discs(world) if self.moving.number else None
 
     def step(self, turns: NDArray[np.float64]) -> None:
         """Turn every robot by ``turns`` (worlds,) to the left [rad] and drive for one decision period."""
@@ -174,11 +198,17 @@ class ArenaCore:
         turn_and_sweep(
             turns, self.step_length, margin, self.geometry, self.radii, poses, self.measurements.gap, self._near
         )
+        if self.moving.number:
+            choose_velocities(self.period, poses, self.radii, self.bounds, self.geometry, self.moving)
+            gap = self.measurements.gap
+            meet_moving(self.period, self.step_length, margin, poses, self.radii, self.moving, gap, self._near)
         for world in self._near.nonzero()[0].tolist():
             self._meet(world)
         commands = np.zeros((self.worlds, 1, 2))
         commands[:, 0, 0] = self.robot.max_speed
         self.physics.advance(commands, self.period, self._near)
+        if self.moving.number:
+            drive_moving(self.period, self.moving)
         self._judge()
         self._sense(before, 0, self.worlds)
 
@@ -194,7 +224,7 @@ class ArenaCore:
     def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
         sense(
             first, last, before, self.physics.poses, self.goals, self.period, self._scanner, self.streams,
-            self.measurements,
+            self.moving.states, float(self.moving.radius[0]), self.measurements,
         )  # fmt: skip
 
     @property
@@ -205,6 +235,8 @@ class ArenaCore:
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
         own = {"poses": self.physics.poses, "drawn": self.drawn, "streams": self.streams, "turns": self.turns}
+        if self.moving.number:
+            own |= {f"moving.{name}": array for name, array in self.moving._asdict().items()}
         return own | {"touched": self.physics.touched} | self.measurements._asdict()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:

@@ -63,6 +63,7 @@ class CentralEpisodes:
                 "goal": robots["goal"],
                 "remaining": robots["remaining"],
                 "success": robots["success"],
+                **({"goals_reached": robots["goals_reached"]} if "goals_reached" in robots else {}),
                 "finished": self.teams.finished.copy(),
                 "collision": robots["collision"],
                 "path_length": robots["path_length"],

@@ -39,7 +39,8 @@ class CorridorEpisodes:
         observation_space: Of one robot.
         action_space: Of one robot.
         finished: (worlds, robots) whether a robot has arrived, or collided where that ends it.
-        arrived: (worlds, robots).
+        arrived: (worlds, robots); in lifelong episodes, whether it has reached a goal at all.
+        reached: (worlds, robots) goals that each has reached.
         touches: (worlds, robots) decision periods in which a robot on its way touched something.
         steps: (worlds,) decisions so far.
         trails: For the picture, None unless the worlds are drawn.
@@ -61,6 +62,7 @@ class CorridorEpisodes:
         self.sketches, self.window = [TeamSketch() for _ in range(worlds)], Window()
         shape = (worlds, options.robots)
         self.finished, self.arrived = np.zeros(shape, np.bool_), np.zeros(shape, np.bool_)
+        self.reached = np.zeros(shape, np.int64)
         self.touches, self.steps = np.zeros(shape, np.int64), np.zeros(worlds, np.int64)
         self._arrival_time = np.full(shape, np.nan)
         self._top = np.array([options.robot.max_speed, options.robot.max_turn_rate])
@@ -89,7 +91,7 @@ class CorridorEpisodes:
             for world in begun:
                 self.core.reset_world(world, generators[world])
                 self.finished[world] = self.arrived[world] = False
-                self.touches[world] = self.steps[world] = 0
+                self.touches[world] = self.steps[world] = self.reached[world] = 0
                 self._arrival_time[world] = np.nan
                 self.sketches[world] = TeamSketch()
                 self._rewards.begin(world)
@@ -125,12 +127,17 @@ class CorridorEpisodes:
         rewards = self._rewards.add_up(weighed, array, active)
         terminated = active & self.finished
         truncated = active & ~self.finished & self._out_of_time[:, None]
+        if self.options.lifelong:
+            for world, robot in np.argwhere(arriving).tolist():
+                self.core.renew_goal(world, robot)
         return rewards, terminated, truncated
 
     def _note(self, touching: NDArray[np.bool_], arriving: NDArray[np.bool_]) -> None:
         self.touches += touching
         self.arrived |= arriving
-        self.finished |= arriving
+        self.reached += arriving
+        if not self.options.lifelong:
+            self.finished |= arriving
         if self.options.collision_ends:
             self.finished |= touching
         if arriving.any():
@@ -176,8 +183,10 @@ class CorridorEpisodes:
     def _robot_facts(self) -> Info:
         """All but what the step was worth."""
         core = self.core
+        counted = {"goals_reached": self.reached.copy()} if self.options.lifelong else {}
         return Info(
-            {
+            counted
+            | {
                 "pose": core.measurements.measured.copy(),
                 "goal": core.goals.copy(),
                 "remaining": core.measurements.remaining.copy(),
@@ -199,7 +208,9 @@ class CorridorEpisodes:
         """How the teams have done so far, by name, (worlds,) each; times of robots not there yet go on."""
         robots = self.options.robots
         times = np.where(np.isnan(self._arrival_time), self.time[:, None], self._arrival_time)
-        return {
+        seconds = np.maximum(self.time, self.options.decision_period)
+        lifelong = {"throughput": self.reached.sum(axis=1) / seconds} if self.options.lifelong else {}
+        return lifelong | {
             "arrival": self.arrived.sum(axis=1) / robots,
             "all_arrived": self.arrived.all(axis=1).astype(np.float64),
             "collided": (self.touches > 0).sum(axis=1) / robots,
@@ -210,11 +221,12 @@ class CorridorEpisodes:
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""
         own = {"steps": self.steps, "finished": self.finished, "arrived": self.arrived, "touches": self.touches}
+        own["reached"] = self.reached
         return own | {"arrival_time": self._arrival_time} | self.core.arrays()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of other episodes with the same options."""
-        for name in ("steps", "finished", "arrived", "touches"):
+        for name in ("steps", "finished", "arrived", "touches", "reached"):
             getattr(self, name)[...] = saved[name]
         self._arrival_time[...] = saved["arrival_time"]
         self.core.load_arrays(saved)

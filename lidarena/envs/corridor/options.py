@@ -20,6 +20,7 @@ Points = Sequence[Sequence[float]]
 
 MOST_ROBOTS = 64
 OBSERVATIONS = ("ranges",)
+LIFELONG = "lifelong"
 _WEIGHTS = {f"{term}_weight": term for term in REWARDS.names}
 """Keywords of version 0.1, and the terms that they weigh."""
 ROBOT = RobotSpec(max_turn_rate=2.0, substep=0.07, reverse=True)
@@ -56,7 +57,7 @@ class CorridorKeywords(TypedDict, total=False):
     robots: int
     places: str | None
     starts: Points | None
-    goals: Points | None
+    goals: Points | str | None
     action: str
     robot: RobotSpec | Mapping[str, Any] | str | None
     lidar: LidarSpec | Mapping[str, Any] | str | None
@@ -87,7 +88,8 @@ class CorridorOptions:
             are drawn from it), ``"random"`` (any places, such that the problem is solvable), the path of a MovingAI
             ``.scen`` file that belongs to a ``.map``, or None: predefined if the map has places, else random.
         starts: (robots, 2) x, y [m] in place of ``places``; with ``goals``.
-        goals: (robots, 2) x, y [m].
+        goals: (robots, 2) x, y [m], with ``starts``; or ``"lifelong"``: whoever reaches its goal gets another one,
+            drawn by the episode's own generator, and nobody is finished but by a collision.
         action: ``"continuous"`` or ``"discrete"``.
         robot: Every robot: a preset of :data:`lidarena.world.robots.ROBOTS`, a mapping of changes (to a ``preset``)
             such as ``{"radius": 0.2, "max_speed": 0.3}``, a ``RobotSpec``, or ``"module:callable"`` that makes one;
@@ -117,7 +119,7 @@ class CorridorOptions:
     robots: int = 4
     places: str | None = None
     starts: Points | None = None
-    goals: Points | None = None
+    goals: Points | str | None = None
     action: str = "continuous"
     robot: RobotSpec = ROBOT
     lidar: LidarSpec = LIDAR
@@ -152,6 +154,11 @@ class CorridorOptions:
         check_range("lidar.max_range", lidar.max_range, *_LIDAR_RANGES)
         return replace(options, robot=robot, lidar=lidar)
 
+    @property
+    def lifelong(self) -> bool:
+        """Whether robots get new goals when they reach theirs."""
+        return isinstance(self.goals, str)
+
     def _check_rest(self) -> None:
         if not isinstance(self.map, str | Floorplan) and not callable(self.map):
             raise ConfigError(f"map = {self.map!r} must be a floor plan's name, file or generator")
@@ -160,7 +167,10 @@ class CorridorOptions:
         ):
             allowed = suggest(str(self.places), [*_PLACES, "a path to a .scen file"])
             raise ConfigError(f"places = {self.places!r} is not known{allowed}")
-        if (self.starts is None) != (self.goals is None) or (self.starts is not None and self.places is not None):
+        if isinstance(self.goals, str) and self.goals != LIFELONG:
+            raise ConfigError(f"goals = {self.goals!r} is not known{suggest(self.goals, [LIFELONG])}")
+        given = self.goals is not None and not self.lifelong
+        if (self.starts is not None) != given or (self.starts is not None and self.places is not None):
             raise ConfigError("starts and goals are given together, and in place of places")
 
 

@@ -128,7 +128,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
     | `robots` | int | `4` | size of the team |
     | `places` | str or None | `None` | `"predefined"`, `"random"` or a `.scen` file; None: predefined if it can be |
     | `starts` | (robots, 2) or None | `None` | x, y [m] in place of `places`; with `goals` |
-    | `goals` | (robots, 2) or None | `None` | x, y [m] |
+    | `goals` | (robots, 2), str or None | `None` | x, y [m]; `"lifelong"`: new ones on arrival |
     | `action` | str | `"continuous"` | or `"discrete"` |
     | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: TurtleBot3 Burger |
     | `lidar` | str, dict or spec | `None` | the same with a ``LidarSpec``; None: 36 beams of 3.5 m, 1 cm of noise |

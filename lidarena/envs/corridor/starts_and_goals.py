@@ -7,11 +7,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError, ScenarioError, TeamError
+from lidarena.base.random_streams import uniform
 from lidarena.envs.corridor.options import CorridorOptions
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
 from lidarena.planning.team.plan import plan_team
 from lidarena.planning.team.well_formed import is_well_formed
+from lidarena.planning.team.widest_way import narrowest_place
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.movingai import load_movingai
 from lidarena.world.scenario import load_scenario
@@ -19,6 +21,9 @@ from lidarena.world.team_drawings import team_places
 
 CELL = 0.2
 """Side of the cells that teams are planned on, Bennewitz & Burgard's [m]."""
+FINER = (0.1, 0.05, 0.025)
+"""Sides of the cells where robots fit through doors and corridors that those of ``CELL`` do not show [m]."""
+_MOST_CELLS = 2**21
 LEAST_ROOM = 0.2
 """Random places leave every robot at least a disc of this radius [m]."""
 _SPACING = 2
@@ -38,7 +43,7 @@ class StartGoalSampler:
         plan: The floor plan.
 
     Attributes:
-        grid: Cells of the floor plan that are blocked.
+        grid: Cells of the floor plan that are blocked, as fine as it takes to get everyone to the goal.
 
     Raises:
         ConfigError: The map has no predefined places, or fewer than there are robots.
@@ -48,15 +53,34 @@ class StartGoalSampler:
 
     def __init__(self, options: CorridorOptions, plan: Floorplan) -> None:
         self._options, self._plan = options, plan
-        self.grid = FloorGrid.of(plan, CELL)
         self._fixed = self._given()
         self._candidates = np.empty(0, np.int64)
+        for cell in self._sides():
+            self.grid = FloorGrid.of(plan, cell)
+            try:
+                self._look_at()
+                return
+            except TeamError as error:
+                refusal = error
+        raise refusal
+
+    def _sides(self) -> list[float]:
+        """Sides of cells to try, the coarsest first, as far as memory allows [m]."""
+        low_x, low_y, high_x, high_y = self._plan.bounds
+        area = (high_x - low_x) * (high_y - low_y)
+        return [CELL, *(cell for cell in FINER if area / cell**2 <= _MOST_CELLS)]
+
+    def _look_at(self) -> None:
+        """Find out where robots can start and go on the grid; raises if they cannot."""
+        options = self._options
         if self._fixed is not None:
             self._check(*self._fixed)
             return
         room = max(LEAST_ROOM, options.robot.radius + 0.05)
         self._graph = grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(room))
-        self._candidates = self._predefined() if self._mode() == "predefined" else self._anywhere()
+        known = team_places(self._plan.name)
+        predefined = self._mode() == "predefined" and known is not None and known.drawn
+        self._candidates = self._predefined() if predefined else self._anywhere()
 
     def draw(self, rng: np.random.Generator) -> Ends:
         """Starts and goals (robots, 2) each of an episode [m].
@@ -78,6 +102,29 @@ class StartGoalSampler:
             f"no solvable starts and goals for {robots} robots were found in map {self._plan.name!r}; "
             "fewer robots, a smaller radius or a larger map are needed"
         )
+
+    def draw_goal(self, goals: NDArray[np.float64], robot: int, stream: NDArray[np.uint64]) -> NDArray[np.float64]:
+        """Another goal (2,) [m] for one of a team's robots, apart from everybody's goals.
+
+        Args:
+            goals: (robots, 2) of the team [m].
+            robot: Its number.
+            stream: (4,) random stream.
+
+        Raises:
+            TeamError: The map has no other place.
+        """
+        points = self._points(self._candidates)
+        away = np.hypot(*(points[:, None] - goals[None]).transpose(2, 0, 1))
+        apart = max(self._graph.apart, 1.0) * self.grid.resolution - 1e-6
+        free = np.flatnonzero((away.min(axis=1) >= apart) & (away[:, robot] > 0.0))
+        if not len(free):
+            raise TeamError(
+                f"map {self._plan.name!r} has {len(points)} places for goals, and none is left for robot {robot} to go "
+                "on to; fewer robots, a smaller radius or a larger map are needed"
+            )
+        chosen: NDArray[np.float64] = points[free[int(uniform(stream) * len(free))]]
+        return chosen
 
     def _planned(self, starts: NDArray[np.int64], goals: NDArray[np.int64], draw: int) -> bool:
         """Whether a planner finds a plan, where too little room is left for problems that need none to tell."""
@@ -106,6 +153,8 @@ class StartGoalSampler:
         if options.starts is not None and options.goals is not None:
             return self._from_keywords(options.starts, "starts"), self._from_keywords(options.goals, "goals")
         mode = self._mode()
+        if options.lifelong and mode.endswith(".scen"):
+            raise ConfigError(f"goals = {options.goals!r} are drawn, but places = {mode!r} gives the robots theirs")
         if mode.endswith(".scen"):
             return self._from_scenario(mode)
         known = team_places(self._plan.name)
@@ -118,7 +167,9 @@ class StartGoalSampler:
                 f"robots = {options.robots}, but map {self._plan.name!r} has starts for {len(known.starts)}; "
                 f"at most {len(known.starts)} robots or places='random' are allowed"
             )
-        return None if known.drawn else (known.starts[: options.robots], known.goals[: options.robots])
+        if known.drawn or options.lifelong:
+            return None
+        return known.starts[: options.robots], known.goals[: options.robots]
 
     def _from_keywords(self, given: object, name: str) -> NDArray[np.float64]:
         try:
@@ -219,6 +270,10 @@ class StartGoalSampler:
             reason = "no free way connects them"
             if _leads(points, self.grid, start, goal):
                 reason = f"with a radius of {self._options.robot.radius} m it is wider than every door on the way"
+                narrow = narrowest_place(self._plan, self.grid.resolution, start, goal)
+                if narrow is not None:
+                    (at_x, at_y), width = narrow
+                    reason += f"; the widest way is {width:.2f} m wide at ({at_x:.2f}, {at_y:.2f})"
             raise TeamError(f"robot {robot} cannot reach its goal ({x:g}, {y:g}) from its start: {reason}")
 
 

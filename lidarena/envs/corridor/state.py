@@ -87,6 +87,7 @@ class CorridorCore:
         self._scanner = Scanner(self.beam, self.lidar.geometry, self.lidar.directions, np.zeros(self.worlds, np.int64))
         self._corners = self.robot.corners
         self.streams = np.zeros((self.worlds, 4), np.uint64)
+        self._goal_streams = np.zeros((self.worlds, 4), np.uint64)
         self.goals, self.starts = np.zeros((*shape, 2)), np.zeros((*shape, 2))
         self.fields = np.zeros((*shape, *self._costs.shape), np.float32)
         self._ways = Ways(self.ground, self.fields, self.goals)
@@ -110,6 +111,8 @@ class CorridorCore:
         starts, goals = self.places.draw(rng)
         self.starts[world], self.goals[world] = starts, goals
         self.streams[world] = seed_stream(rng)
+        if self.options.lifelong:
+            self._goal_streams[world] = seed_stream(rng)
         self.measurements.since_scan[world] = first_scan(self.options.decision_period, self.beam)
         self._speed_bias[world] = self._noise.speed_bias * rng.standard_normal(self.robots)
         self._stalled[world] = self.travelled[world] = 0.0
@@ -123,12 +126,26 @@ class CorridorCore:
             self.physics.poses[world, robot, 2] = np.arctan2(lookahead_point[1] - y, lookahead_point[0] - x)
         self._perceive(self.physics.poses, world, world + 1)
 
+    def renew_goal(self, world: int, robot: int) -> None:
+        """Give a robot that has reached its goal another one, and tell it how far that is."""
+        stream, goals = self._goal_streams[world], self.goals[world]
+        goals[robot] = self.places.draw_goal(goals, robot, stream)
+        here = self.physics.poses[world, robot, :2]
+        self._look_up_way(world, robot, here)
+        (x, y), lookahead_point = here.tolist(), self.measurements.lookahead_point[world, robot]
+        left = distance_to_goal(self.fields[world, robot], goals[robot], x, y, self.ground, 1e6, lookahead_point)
+        self.measurements.remaining[world, robot] = left
+
     def _look_up_ways(self, world: int) -> None:
-        for robot, (row, col) in enumerate(self.places.grid.cells(self.goals[world]).tolist()):
-            self.fields[world, robot] = self._field((row, col))
-            (x, y), goal = self.starts[world, robot].tolist(), self.goals[world, robot]
-            if distance_to_goal(self.fields[world, robot], goal, x, y, self.ground, np.inf, np.empty(2)) == np.inf:
-                self.fields[world, robot] = self._field((row, col), tight=True)
+        for robot in range(self.robots):
+            self._look_up_way(world, robot, self.starts[world, robot])
+
+    def _look_up_way(self, world: int, robot: int, start: NDArray[np.float64]) -> None:
+        goal, (x, y) = self.goals[world, robot], start.tolist()
+        row, col = self.places.grid.cells(goal)[0].tolist()
+        self.fields[world, robot] = self._field((row, col))
+        if distance_to_goal(self.fields[world, robot], goal, x, y, self.ground, np.inf, np.empty(2)) == np.inf:
+            self.fields[world, robot] = self._field((row, col), tight=True)
 
     def _field(self, cell: tuple[int, int], tight: bool = False) -> NDArray[np.float32]:
         """Lengths of the ways from everywhere to a cell [m], 1e9 where there is none.
@@ -185,6 +202,8 @@ class CorridorCore:
             "stalled": self._stalled,
             "travelled": self.travelled,
         }
+        if self.options.lifelong:
+            named["goal_streams"] = self._goal_streams
         named |= {"touched_wall": self.physics.touched_wall, "touched_robot": self.physics.touched_robot}
         return named | {f"measurements.{name}": array for name, array in self.measurements._asdict().items()}
 

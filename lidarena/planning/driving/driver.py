@@ -11,16 +11,12 @@ from lidarena.planning.driving.following import (
     clear_queue,
     has_queue,
     is_path_blocked,
-    loiter,
     plan_commands,
     stays_clear,
 )
 from lidarena.planning.driving.state import ARRIVAL, Drive, DriverSettings, Perceptions
 from lidarena.planning.driving.survey import look_around, remember_hits
 from lidarena.planning.grid.grid_search import search_grid, trace
-
-_PIECE = 0.1
-"""Commands are compared with hits at points of their way so far apart [m]."""
 
 
 @kernel
@@ -115,34 +111,3 @@ def _find(w: int, x: float, y: float, drive: Drive) -> NDArray[np.float64]:
         path[i, 0] = (cells[i, 1] + 0.5) * frame[2] + frame[0]
         path[i, 1] = (cells[i, 0] + 0.5) * frame[2] + frame[1]
     return path
-
-
-@kernel
-def next_command(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> int:
-    """The next planned command if map and beams say that it is safe, else a turn."""
-    if stays_clear(w, senses, settings, drive) and has_queue(w, drive):
-        command = drive.queue[w, drive.queue_span[w, 0]]
-        drive.queue_span[w, 0] += 1
-        drive.turning[w] = -1
-        if not _would_touch(w, command, senses, settings):
-            return int(command)
-    clear_queue(w, drive)
-    return loiter(w, senses, settings, drive)
-
-
-@kernel
-def _would_touch(w: int, command: int, senses: Perceptions, settings: DriverSettings) -> bool:
-    """Whether the beams say that a command leads too near to something, and nearer than the robot is."""
-    dx, dy = settings.commands.moves[command, 0], settings.commands.moves[command, 1]
-    pieces = max(1, math.ceil(math.hypot(dx, dy) / _PIECE - 1e-6))
-    far = settings.keep + math.hypot(dx, dy)
-    for i in range(senses.scans.shape[1]):
-        share = np.float64(senses.scans[w, i]) / settings.max_range
-        before = share * settings.max_range
-        if 0.0 < share < 1.0 and before < far + 1e-6:
-            x, y = before * math.cos(settings.angles[i]), before * math.sin(settings.angles[i])
-            for k in range(1, pieces + 1):
-                after = math.hypot(x - k / pieces * dx, y - k / pieces * dy)
-                if after < settings.keep and after < before:
-                    return True
-    return False

@@ -27,11 +27,11 @@ from lidarena.planning.driving.driver import (
     has_arrived,
     is_cornered,
     must_plan,
-    next_command,
     remaining_way,
     sense,
     stop,
 )
+from lidarena.planning.driving.following import next_command
 from lidarena.planning.driving.goals import (
     GoalAccounts,
     empty_accounts,

@@ -7,6 +7,8 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import kernel
 from lidarena.planning.driving.state import Drive, DriverSettings, KnownGround, Perceptions
+from lidarena.planning.driving.survey import points_around
+from lidarena.planning.grid.guard import is_safe, turn_in_place, way_out
 from lidarena.planning.grid.path_following import (
     END_REACH,
     LOOKAHEAD,
@@ -85,21 +87,32 @@ def can_loiter(w: int, pose: NDArray[np.float64], ground: KnownGround, settings:
 
 
 @kernel
-def loiter(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> int:
-    """The turning command that keeps the robot safe where it is; see ``PathFollower.loiter``."""
-    velocities, pose, margins = settings.commands.velocities, senses.poses[w], settings.margins
-    if drive.turning[w] >= 0 and min(_room(w, drive.turning[w], pose, drive.near, settings), margins[0]) >= margins[1]:
-        return int(drive.turning[w])
-    best, most = -1, -np.inf
-    for k in range(velocities.shape[0]):
-        if velocities[k, 1] == 0.0:
-            continue
-        room = min(_room(w, k, pose, drive.near, settings), margins[0])
-        sharper = best >= 0 and velocities[k, 1] > velocities[best, 1]
-        if room > most or (room == most and sharper):
-            best, most = k, room
-    drive.turning[w] = best
-    return best
+def next_command(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> int:
+    """The next planned command if what the beams have hit says that it is safe, else a turn, or the way out."""
+    points = points_around(w, senses, settings, drive)
+    if has_queue(w, drive) and not is_safe(points, settings.commands, _queue(w, drive), settings.keep):
+        clear_queue(w, drive)
+    if not has_queue(w, drive):
+        commands, keep, room = settings.commands, settings.keep, settings.margins[0]
+        drive.turning[w] = turn_in_place(points, commands, drive.turning[w], keep, room)
+        drive.given[w] = drive.turning[w]
+        if drive.turning[w] >= 0:
+            return int(drive.turning[w])
+        _enqueue(w, way_out(points, commands, keep), 0.0, drive)
+    drive.turning[w] = -1
+    if has_queue(w, drive):
+        drive.given[w] = drive.queue[w, drive.queue_span[w, 0]]
+        drive.queue_span[w, 0] += 1
+    else:
+        drive.given[w] = turn_in_place(points, settings.commands, -1, 0.0, settings.margins[0])
+    return int(drive.given[w])
+
+
+@kernel
+def _enqueue(w: int, sequence: NDArray[np.int64], kept: float, drive: Drive) -> None:
+    count = min(len(sequence), drive.queue.shape[1])
+    drive.queue[w, :count] = sequence[:count]
+    drive.queue_span[w, 0], drive.queue_span[w, 1], drive.kept[w] = 0, count, kept
 
 
 @kernel
@@ -124,10 +137,11 @@ def _towards(
     pose: NDArray[np.float64],
     settings: DriverSettings,
     drive: Drive,
+    points: NDArray[np.float64],
     margin: float,
     lookahead: float,
 ) -> bool:
-    """Search commands along a path and queue them; whether there are any."""
+    """Search commands along a path and queue them; whether there are any that are safe."""
     ground = drive.ground
     gap, closed, frame = _gap(ground, w), _closed(ground, w), ground.frame[w]
     index = lookahead_point(path, pose, gap, closed, frame, lookahead, margin)
@@ -136,11 +150,9 @@ def _towards(
     margins = np.array([min(margin, max(here, 0.0) - 0.01), settings.margins[3], WEIGHT])
     limits = np.array([reach, WINDOW, _MOST_STATES])
     found = search_commands(gap, closed, frame, pose, path[index], settings.commands, margins, limits)
-    count = min(len(found), drive.queue.shape[1])
-    if count == 0:
+    if len(found) == 0 or not is_safe(points, settings.commands, found, settings.keep):
         return False
-    drive.queue[w, :count] = found[:count]
-    drive.queue_span[w, 0], drive.queue_span[w, 1], drive.kept[w] = 0, count, margin
+    _enqueue(w, found, margin, drive)
     return True
 
 
@@ -152,12 +164,13 @@ def plan_commands(
     pose, margins = senses.poses[w], settings.margins
     if has_queue(w, drive) and _leads_to(w, path, pose, settings, drive):
         return True
-    found = _towards(w, path, pose, settings, drive, margins[0], LOOKAHEAD)
-    found = found or _towards(w, path, pose, settings, drive, margins[1], LOOKAHEAD)
-    found = found or _towards(w, path, pose, settings, drive, margins[1], 2.0 * LOOKAHEAD)
-    found = found or _towards(w, path, pose, settings, drive, margins[1], 0.5 * LOOKAHEAD)
+    points = points_around(w, senses, settings, drive)
+    found = _towards(w, path, pose, settings, drive, points, margins[0], LOOKAHEAD)
+    found = found or _towards(w, path, pose, settings, drive, points, margins[1], LOOKAHEAD)
+    found = found or _towards(w, path, pose, settings, drive, points, margins[1], 2.0 * LOOKAHEAD)
+    found = found or _towards(w, path, pose, settings, drive, points, margins[1], 0.5 * LOOKAHEAD)
     if not found and not can_loiter(w, pose, drive.ground, settings):
-        found = _towards(w, path, pose, settings, drive, margins[2], 0.5 * LOOKAHEAD)
+        found = _towards(w, path, pose, settings, drive, points, margins[2], 0.5 * LOOKAHEAD)
     return found
 
 

@@ -17,6 +17,18 @@ _MARGINS = (0.2, 0.15, 0.12, 0.4)
 _LONGEST_PATH, _LONGEST_QUEUE = 4096, 1024
 
 
+class LidarView(NamedTuple):
+    """Where a lidar looks.
+
+    Attributes:
+        angles: (beams,) [rad].
+        all_around: Whether nothing near is hidden between two beams or outside of the field of view.
+    """
+
+    angles: NDArray[np.float64]
+    all_around: bool
+
+
 class DriverSettings(NamedTuple):
     """How robots drive.
 
@@ -25,7 +37,8 @@ class DriverSettings(NamedTuple):
         angles: (beams,) of its lidar [rad].
         max_range: Of its lidar [m].
         extra: How much more room than DA-SLAM's robot it needs [m].
-        keep: Commands that end nearer than this to what a beam hit, and nearer than before, are not given [m].
+        keep: Commands that lead nearer than this to what a beam hit, and nearer than before, are not given [m].
+        all_around: Whether its beams see all that is near.
         margins: (4,) clearance that planned poses keep; that in narrow places; that to get out of a place where the
             robot cannot turn round; that which is kept where there is room [m].
         resolution: Side of a map cell [m].
@@ -36,6 +49,7 @@ class DriverSettings(NamedTuple):
     max_range: float
     extra: float
     keep: float
+    all_around: bool
     margins: NDArray[np.float64]
     resolution: float
 
@@ -86,7 +100,11 @@ class Drive(NamedTuple):
     """What W drivers remember and plan.
 
     Attributes:
-        hits: (W, H, beams, 2) where beams hit something nearby in the last H steps, in turn [m].
+        reckoned: (W, 3) where the commands have taken the robot since it began, if all went as it should.
+        given: (W,) the command that it executes, -1 for none.
+        scanned: (W, 3) where it had been taken when the newest scan was made.
+        scan_sum: (W,) sum of that scan's ranges; a slow lidar repeats its last one.
+        hits: (W, H, beams, 2) where beams hit something nearby in the last H steps, in turn; about ``reckoned`` [m].
         hit_counts: (W, H) how many.
         newest: (W,) which of the H was written last.
         near: The window around the robot.
@@ -101,6 +119,10 @@ class Drive(NamedTuple):
         turning: (W,) the command with which the robot loiters, -1 for none.
     """
 
+    reckoned: NDArray[np.float64]
+    given: NDArray[np.int64]
+    scanned: NDArray[np.float64]
+    scan_sum: NDArray[np.float64]
     hits: NDArray[np.float64]
     hit_counts: NDArray[np.int64]
     newest: NDArray[np.int64]
@@ -117,11 +139,12 @@ class Drive(NamedTuple):
 
 
 def make_settings(
-    commands: Commands, angles: NDArray[np.float64], max_range: float, extra: float, keep: float, resolution: float
+    commands: Commands, lidar: LidarView, max_range: float, extra: float, keep: float, resolution: float
 ) -> DriverSettings:
     """Return the settings of a robot that needs ``extra`` more room than DA-SLAM's; see ``DriverSettings``."""
-    beams = np.ascontiguousarray(angles, np.float64)
-    return DriverSettings(commands, beams, float(max_range), extra, keep, np.array(_MARGINS) + extra, resolution)
+    beams = np.ascontiguousarray(lidar.angles, np.float64)
+    margins = np.array(_MARGINS) + extra
+    return DriverSettings(commands, beams, float(max_range), extra, keep, lidar.all_around, margins, resolution)
 
 
 def empty_drive(worlds: int, rows: int, columns: int, settings: DriverSettings) -> Drive:
@@ -130,6 +153,10 @@ def empty_drive(worlds: int, rows: int, columns: int, settings: DriverSettings) 
     beams = len(settings.angles)
     side = 2 * math.ceil((NEARBY + settings.extra) / settings.resolution) + 1
     return Drive(
+        np.zeros((worlds, 3)),
+        np.full(worlds, -1, np.int64),
+        np.zeros((worlds, 3)),
+        np.full(worlds, np.nan),
         np.zeros((worlds, remembered, beams, 2)),
         np.zeros((worlds, remembered), np.int64),
         np.zeros(worlds, np.int64),
@@ -162,6 +189,8 @@ def _empty_ground(worlds: int, cells: int) -> KnownGround:
 
 def forget(drive: Drive, world: int) -> None:
     """Begin anew in one world."""
+    drive.reckoned[world] = drive.scanned[world] = 0.0
+    drive.given[world], drive.scan_sum[world] = -1, np.nan
     drive.hit_counts[world] = drive.newest[world] = 0
     drive.has_goal[world] = False
     drive.path_points[world], drive.queue_span[world] = 0, 0

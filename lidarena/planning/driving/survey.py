@@ -18,7 +18,9 @@ from lidarena.planning.driving.state import (
     Perceptions,
 )
 from lidarena.planning.grid.frontiers import nearest_cell
+from lidarena.planning.grid.guard import GUARDED, carried, nearby
 from lidarena.planning.grid.inflation import ESCAPE_BASE, ESCAPE_SLOPE, cost_at, squared_distances
+from lidarena.planning.grid.steering import move
 from lidarena.planning.grid.way_lengths import way_lengths
 
 _OCCUPIED = 50
@@ -28,9 +30,19 @@ _WEIGHT, _RATE = 5.0, 10.0  # of the inflation, as in Inflation
 @kernel
 def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> None:
     """Note where the newest scan of a world hit something nearby, in place of the oldest that is remembered."""
+    if drive.given[w] >= 0:
+        move(drive.reckoned[w], settings.commands.moves[drive.given[w]])
+        drive.given[w] = -1
     slot = (drive.newest[w] + 1) % drive.hits.shape[1]
     drive.newest[w], count = slot, 0
-    x, y, heading = senses.poses[w, 0], senses.poses[w, 1], senses.poses[w, 2]
+    drive.hit_counts[w, slot] = 0
+    total = 0.0
+    for k in range(senses.scans.shape[1]):
+        total += np.float64(senses.scans[w, k])
+    if total == drive.scan_sum[w]:
+        return  # a slow lidar's scan of before
+    drive.scan_sum[w], drive.scanned[w] = total, drive.reckoned[w]
+    x, y, heading = drive.reckoned[w, 0], drive.reckoned[w, 1], drive.reckoned[w, 2]
     reach, longest = NEAR_HITS + settings.extra, settings.max_range
     for k in range(senses.scans.shape[1]):
         share = np.float64(senses.scans[w, k]) / longest
@@ -40,6 +52,42 @@ def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: 
             drive.hits[w, slot, count, 1] = y + away * math.sin(angle)
             count += 1
     drive.hit_counts[w, slot] = count
+
+
+@kernel
+def points_around(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> NDArray[np.float64]:
+    """What a world's robot must keep clear of, (n, 2) in its own frame [m]: what the newest scan's beams have hit.
+
+    Where they do not see all that is near, also what they hit before, and what is occupied in the window around it.
+    """
+    angles, longest = settings.angles, settings.max_range
+    near, count = np.empty((len(angles) + drive.hits.shape[1] * drive.hits.shape[2], 2)), 0
+    for k in range(len(angles)):
+        away = np.float64(senses.scans[w, k])
+        if 0.0 < away < min(longest, GUARDED):
+            near[count, 0], near[count, 1] = away * math.cos(angles[k]), away * math.sin(angles[k])
+            count += 1
+    near[:count] = carried(near[:count], np.zeros(3), drive.scanned[w])
+    if settings.all_around:
+        return nearby(near[:count], drive.reckoned[w])
+    for slot in range(drive.hits.shape[1]):
+        if slot != drive.newest[w]:
+            end = count + drive.hit_counts[w, slot]
+            near[count:end] = drive.hits[w, slot, : drive.hit_counts[w, slot]]
+            count = end
+    return np.concatenate((nearby(near[:count], drive.reckoned[w]), _occupied_around(w, senses, drive)))
+
+
+@kernel
+def _occupied_around(w: int, senses: Perceptions, drive: Drive) -> NDArray[np.float64]:
+    rows, columns, frame = drive.near.extent[w, 2], drive.near.extent[w, 3], drive.near.frame[w]
+    found, count = np.empty((rows * columns, 2)), 0
+    for k in range(rows * columns):
+        if drive.near.occupancy[w, k] >= _OCCUPIED:
+            found[count, 0] = (k % columns + 0.5) * frame[2] + frame[0]
+            found[count, 1] = (k // columns + 0.5) * frame[2] + frame[1]
+            count += 1
+    return nearby(found[:count], senses.poses[w])
 
 
 @inlined
@@ -84,9 +132,10 @@ def _fill(
     x, y = senses.origin[w, 0] + first_c * side, senses.origin[w, 1] + first_r * side
     ground.frame[w, 0], ground.frame[w, 1], ground.frame[w, 2] = x, y, side
     for slot in range(drive.hits.shape[1]):
-        for i in range(drive.hit_counts[w, slot]):
-            c = math.floor((drive.hits[w, slot, i, 0] - x) / side)
-            r = math.floor((drive.hits[w, slot, i, 1] - y) / side)
+        hits = carried(drive.hits[w, slot, : drive.hit_counts[w, slot]], drive.reckoned[w], senses.poses[w])
+        for i in range(len(hits)):
+            c = math.floor((hits[i, 0] - x) / side)
+            r = math.floor((hits[i, 1] - y) / side)
             if 0 <= r < rows and 0 <= c < columns:
                 occupancy[r, c] = 100
     squares = squared_distances(occupancy, _OCCUPIED, _reach(settings)).reshape(cells)

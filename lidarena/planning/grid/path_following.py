@@ -13,6 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import kernel
+from lidarena.planning.grid.guard import is_safe
 from lidarena.planning.grid.steering import Commands, loiter_gap, move, steer, tightest
 from lidarena.planning.grid.surroundings import Surroundings, gap_at, line_is_free
 
@@ -82,6 +83,8 @@ class PathFollower:
         lookahead: How far along the path commands are searched (m).
         reach: How near to the path's point is there (m); at the path's end ``end_reach``.
         end_reach: How near to the end of the path is there (m).
+        keep: Distance to ``points`` below which commands are not planned (m).
+        points: (n, 2) what the robot's beams have hit, in its own frame (m).
     """
 
     commands: Commands
@@ -92,9 +95,10 @@ class PathFollower:
     lookahead: float = LOOKAHEAD
     reach: float = REACH
     end_reach: float = END_REACH
+    keep: float = 0.0
+    points: NDArray[np.float64] = field(default_factory=lambda: np.empty((0, 2)), repr=False)
     _queue: NDArray[np.int64] = field(default_factory=lambda: np.empty(0, np.int64), repr=False)
     _kept: float = field(default=math.inf, repr=False)  # clearance that the planned commands were meant to keep
-    _turning: int | None = field(default=None, repr=False)
 
     @classmethod
     def with_extra_room(cls, commands: Commands, extra: float) -> "PathFollower":
@@ -134,10 +138,14 @@ class PathFollower:
             attempts.append((self.last_margin, 0.5 * self.lookahead))
         for margin, lookahead in attempts:
             sequence = self._towards(path, pose, around, margin, lookahead)
-            if len(sequence):
-                self._queue, self._kept = sequence, margin
+            if len(sequence) and is_safe(self.points, self.commands, sequence, self.keep):
+                self.follow(sequence, margin)
                 return True
         return False
+
+    def follow(self, sequence: NDArray[np.int64], kept: float = 0.0) -> None:
+        """Plan a sequence (n,) of commands that is meant to keep a clearance (m)."""
+        self._queue, self._kept = sequence, kept
 
     def _leads_to(self, path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings) -> bool:
         """Whether the planned commands end where they would be planned to now, as they do while the robot turns."""
@@ -174,25 +182,7 @@ class PathFollower:
             return None
         command = int(self._queue[0])
         self._queue = self._queue[1:]
-        self._turning = None
         return command
-
-    def loiter(self, pose: NDArray[np.float64], around: Surroundings) -> int:
-        """Return the turning command that keeps the robot safe where it is.
-
-        It is the one whose full circle keeps the most clearance, left where both keep ``margin``; once begun, it goes
-        on until its circle falls below ``least_margin``, for going left and right in turn would creep forwards.
-        """
-        at = np.asarray(pose, np.float64)
-        turns = [k for k, (_, w) in enumerate(self.commands.velocities) if w != 0.0]
-        turns.sort(key=lambda k: -self.commands.velocities[k, 1])
-
-        def room(k: int) -> float:
-            return min(self._room(k, at, around), self.margin)
-
-        if self._turning is None or room(self._turning) < self.least_margin:
-            self._turning = max(turns, key=room)  # the first of equals: the sharpest to the left
-        return self._turning
 
     def can_loiter(self, pose: NDArray[np.float64], around: Surroundings) -> bool:
         """Return whether the robot has room to drive a circle where it is, keeping ``least_margin``."""

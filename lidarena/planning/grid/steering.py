@@ -50,7 +50,7 @@ class Commands(NamedTuple):
             ConfigError: for a period or velocities that are not finite and positive, or no command that drives or none
                 that turns.
         """
-        rows = np.asarray(velocities, dtype=np.float64).reshape(-1, 2)
+        rows = np.array(velocities, dtype=np.float64).reshape(-1, 2)  # a copy: kernels are compiled for writable ones
         if not 0.0 < period < math.inf or not np.isfinite(rows).all() or (rows[:, 0] < 0.0).any():
             raise ConfigError(
                 f"commands {rows.tolist()} held for {period} s, allowed are finite v >= 0 and a period > 0"

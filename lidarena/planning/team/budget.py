@@ -15,6 +15,8 @@ class Budget:
 
     def __init__(self, seconds: float, iterations: int | None = None) -> None:
         self._end = time.perf_counter() + seconds
+        self._whole: Budget | None = None
+        self._granted = iterations
         self._iterations = math.inf if iterations is None else iterations
 
     def take(self) -> bool:
@@ -22,7 +24,17 @@ class Budget:
         if self._iterations <= 0 or self.spent():
             return False
         self._iterations -= 1
-        return True
+        return self._whole is None or self._whole.take()
+
+    def part(self, share: float, iterations: int | None = None) -> "Budget":
+        """A share of the time that is left; its iterations are taken from this budget as well."""
+        part = Budget(share * self.left(), iterations)
+        part._whole = self
+        return part
+
+    def again(self) -> "Budget":
+        """A budget with all the iterations that this one had at first, and the time that is left."""
+        return Budget(self.left(), self._granted)
 
     def left(self) -> float:
         """Seconds left, not negative."""

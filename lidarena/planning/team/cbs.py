@@ -20,7 +20,7 @@ from lidarena.planning.team.constraints import Constraint, forbid, permit, split
 from lidarena.planning.team.grid_graph import STEP
 from lidarena.planning.team.prioritized import conflicts_of
 from lidarena.planning.team.route import GAVE_UP, find_route
-from lidarena.planning.team.search_arrays import PlaceCosts
+from lidarena.planning.team.search_arrays import NO_ROWS, PlaceCosts
 from lidarena.planning.team.traffic import NO_BOUND, Traffic
 
 _LOOKED_AT = 4  # conflicts of a node whose children are compared
@@ -150,20 +150,7 @@ class ConflictBasedSearch:
         for other in others:
             if other != robot and self._weight:
                 _add_presence(node.paths[other], node.lengths[other], *graph.arrays[1:], self._weight, layer)
-        for c in mine:
-            forbid(c.moves, np.int64(c.time), c.forever, traffic.reserved)
-        traffic.memory.limits[:2] = NO_BOUND
-        steps = find_route(
-            graph.neighbours,
-            PlaceCosts(traffic.ahead[robot], self._base, layer),
-            traffic.reserved,
-            np.int64(last),
-            traffic.ends[robot],
-            traffic.memory,
-            node.paths[robot],
-        )
-        for c in mine:
-            permit(c.moves, np.int64(c.time), c.forever, traffic.reserved)
+        steps = self._find(robot, last, mine, layer, node.paths[robot])
         for other in others:
             if other != robot and self._weight:
                 _add_presence(node.paths[other], node.lengths[other], *graph.arrays[1:], -self._weight, layer)
@@ -171,6 +158,27 @@ class ConflictBasedSearch:
             self._lost = min(self._lost, node.cost)
         node.lengths[robot] = max(steps, 0)
         return steps >= 0
+
+    def _find(
+        self, robot: int, last: int, mine: list[Constraint], layer: NDArray[np.int32], path: NDArray[np.int32]
+    ) -> int:
+        """Find a robot's cheapest path that obeys its constraints, with larger tables where these are too small."""
+        traffic = self._traffic
+        for c in mine:
+            while len(traffic.reserved.counts) <= traffic.reserved.used[0] + len(c.moves):
+                traffic.memory.limits[5] = NO_ROWS
+                traffic.make_room()
+            forbid(c.moves, np.int64(c.time), c.forever, traffic.reserved)
+        traffic.memory.limits[:2] = NO_BOUND
+        costs, ends = PlaceCosts(traffic.ahead[robot], self._base, layer), traffic.ends[robot]
+        while True:
+            reserved, memory = traffic.reserved, traffic.memory
+            steps = find_route(traffic.graph.neighbours, costs, reserved, np.int64(last), ends, memory, path)
+            if steps != GAVE_UP or not traffic.make_room():
+                break
+        for c in mine:
+            permit(c.moves, np.int64(c.time), c.forever, traffic.reserved)
+        return steps
 
     def _expand(self, node: _Node) -> list[_Node]:
         """Children of a node; a node that is bypassed until it has no conflicts has none, and is changed in place."""

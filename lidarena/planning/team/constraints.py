@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import leaf
 from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import CLOSE, MOVES, nearest_approach
+from lidarena.planning.team.reservations import row_of
 from lidarena.planning.team.search_arrays import Reservations
 
 
@@ -36,7 +37,7 @@ class Constraint(NamedTuple):
 
 @leaf
 def forbid(moves: NDArray[np.int64], time: int, forever: bool, reserved: Reservations) -> None:
-    """Enter a constraint into reservation tables."""
+    """Enter a constraint into reservation tables, in which nothing else but constraints may stand."""
     for k in range(len(moves)):
         place = moves[k, 0]
         if forever:
@@ -44,7 +45,10 @@ def forbid(moves: NDArray[np.int64], time: int, forever: bool, reserved: Reserva
                 if moves[k, 1] >> b & 1:
                     reserved.since[place, b] = min(reserved.since[place, b], time)
         else:
-            reserved.table[place, time] |= np.uint16(moves[k, 1])
+            row = row_of(reserved, place, time)
+            for b in range(9):
+                if moves[k, 1] >> b & 1:
+                    reserved.counts[row, time & 15] |= np.int64(1) << np.int64(4 * b)
             reserved.until[place] = max(reserved.until[place], time + 1)
 
 
@@ -56,7 +60,7 @@ def permit(moves: NDArray[np.int64], time: int, forever: bool, reserved: Reserva
         reserved.since[place, :] = 2**30
         reserved.until[place] = 0
         if not forever:
-            reserved.table[place, time] = np.uint16(0)
+            reserved.counts[row_of(reserved, place, time), time & 15] = 0
 
 
 def split(

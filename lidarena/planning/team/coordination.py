@@ -12,7 +12,7 @@ from lidarena.base.jit import leaf
 from lidarena.planning.team.prioritized import longest_first, plan_alone
 from lidarena.planning.team.reservations import move_between
 from lidarena.planning.team.route import free_from
-from lidarena.planning.team.search_arrays import Reservations
+from lidarena.planning.team.search_arrays import Reservations, counts_at
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
 
@@ -63,7 +63,7 @@ def _schedule(
                 if to < 0 or to > length:
                     continue
                 m = move_between(neighbours, here, np.int64(path[to]))
-                taken = t < reserved.until[here] and reserved.table[here, t] >> m & 1
+                taken = t < reserved.until[here] and counts_at(reserved, here, t) >> 4 * m & 15
                 if not taken and t < reserved.since[here, m]:
                     before[t + 1, to] = s
     return -1

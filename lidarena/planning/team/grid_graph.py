@@ -17,7 +17,7 @@ waits included. Smaller units only choose between paths of equally many steps: a
 straight move, so that paths run straight."""
 
 UNREACHABLE = np.int64(2**30)
-_CACHED_GOALS = 4096
+_CACHED_BYTES = 24 * 2**20  # of distances kept, per graph
 _KEPT_TABLES = 2
 
 
@@ -150,15 +150,16 @@ class GridGraph:
     def ahead(self, goal: int) -> NDArray[np.int32]:
         """What the shortest way from every place to ``goal`` costs (n,), in units; ``UNREACHABLE`` without a way.
 
-        The exact heuristic for space-time search: kept for the next call with the same goal.
+        The exact heuristic for space-time search: kept for the next call with the same goal, as far as there is room.
         """
-        if goal not in self._ahead:
-            if len(self._ahead) >= _CACHED_GOALS:
-                self._ahead.clear()
-            costs = np.full(len(self), UNREACHABLE, np.int32)
-            _flood_steps(self.neighbours, np.int64(goal), costs, np.empty(len(self), np.int32), STEP)
-            self._ahead[goal] = costs
-        return self._ahead[goal]
+        if goal in self._ahead:
+            return self._ahead[goal]
+        costs = np.full(len(self), UNREACHABLE, np.int32)
+        _flood_steps(self.neighbours, np.int64(goal), costs, np.empty(len(self), np.int32), STEP)
+        if (len(self._ahead) + 1) * costs.nbytes > _CACHED_BYTES:
+            self._ahead.clear()
+        self._ahead[goal] = costs
+        return costs
 
     def ahead_with(self, goal: int, surcharge: NDArray[np.int32]) -> NDArray[np.int32]:
         """As ``ahead`` where entering a place, or waiting in it, costs ``surcharge`` (n,) units more; not kept."""

@@ -95,14 +95,15 @@ def footprints(apart: float, connectivity: int, stride: int) -> tuple[NDArray[np
         stride: Columns of the padded grid in which the other cell is looked up.
 
     Returns:
-        Where each move's entries begin and the last's end (connectivity + 2,); entries (n, 2): offset in the flattened
-        padded grid, bits of the moves.
+        Where each move's entries begin and the last's end (connectivity + 2,); entries (n, 3): offset in the flattened
+        padded grid, bits of the moves, and a one for each of them in its four bits of ``search_arrays.Reservations``.
     """
     parts = []
     for move in range(connectivity + 1):
         bits = _conflicting_bits(move, apart, connectivity)
         rows, cols = np.nonzero(bits)
         reach = len(bits) // 2
-        parts.append(np.stack([(rows - reach) * stride + cols - reach, bits[rows, cols]], axis=1))
+        ones = sum((bits[rows, cols] >> m & 1) << 4 * m for m in range(9))
+        parts.append(np.stack([(rows - reach) * stride + cols - reach, bits[rows, cols], ones], axis=1))
     begins = np.cumsum([0, *(len(part) for part in parts)]).astype(np.int64)
     return begins, np.concatenate(parts).astype(np.int64)

@@ -14,16 +14,21 @@ from lidarena.planning.team.coordination import plan_coordination
 from lidarena.planning.team.deviation import DeviationCosts
 from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph, grid_graph_of
 from lidarena.planning.team.joint import plan_joint
+from lidarena.planning.team.lacam import plan_lacam
 from lidarena.planning.team.prioritized import plan_independent, plan_prioritized
 from lidarena.planning.team.search import plan_search
 from lidarena.planning.team.team_plan import TeamPlan
 from lidarena.planning.team.traffic import Traffic
 
-Method = Literal["independent_astar", "prioritized_astar", "coordination", "joint_astar", "prioritized_search", "cbs"]
+Method = Literal[
+    "independent_astar", "prioritized_astar", "coordination", "joint_astar", "prioritized_search", "lacam", "cbs"
+]
 """``independent_astar`` ignores the other robots (solved only if that happens to be free of conflicts).
 ``prioritized_astar`` is Bennewitz & Burgard's planner. ``coordination`` keeps to the independent paths. ``joint_astar``
-is the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan until
-it is settled or time is up. ``cbs`` certifies the optimum of some 2 to 6 robots, or says that it could not."""
+is the joint optimum of two robots. ``prioritized_search`` looks for a good order of priority and repairs the plan
+until it is settled or time is up; where no order works it starts from LaCAM's plan. ``lacam`` is LaCAM*, which is
+complete: it finds a plan where there is one, given time, and may prove that there is none. ``cbs`` certifies the
+optimum of some 2 to 6 robots, or says that it could not."""
 MAX_CELL_COST = 64.0
 
 
@@ -57,8 +62,9 @@ def plan_team(
         radius: Of every robot, in cells; 0 = points.
         time_limit: Seconds that ``prioritized_search`` and ``cbs`` may take (``joint_astar``: a million states each).
         seed: Of the random choices of ``prioritized_search`` and ``cbs``.
-        iterations: Greatest number of neighbourhoods that are replanned, of orders and of nodes; with it and a
-            ``time_limit`` of infinity, the same input gives the same plan on every machine.
+        iterations: Greatest number of neighbourhoods that are replanned and of orders, of nodes, and of slices of
+            LaCAM's search (some ten thousand moves each); with it and a ``time_limit`` of infinity, the same input
+            gives the same plan on every machine.
         cell_costs: (rows, cols) what being in a cell for a step costs besides the step itself, Bennewitz & Burgard's
             P(occ) in steps, 0 to 64; for ``independent_astar``, ``prioritized_astar`` and ``prioritized_search``.
         deviation: (m, 2) distance in cells and cost in steps of being so near to where a robot with priority is planned
@@ -81,8 +87,8 @@ def plan_team(
     ends = np.stack([_places(graph, first, "start"), _places(graph, final, "goal")], axis=1)
     surcharge = _surcharge(graph, cell_costs, method)
     deviation_costs = _deviation(deviation, method)
-    _check_reachable(graph, ends, blocked)
     traffic = Traffic(graph, ends, surcharge, timed=deviation_costs is not None)
+    _check_reachable(traffic, blocked)
     plan = _plan(traffic, method, budget, time_limit, iterations, np.random.default_rng(seed), deviation_costs)
     traffic.close()
     return plan
@@ -91,6 +97,8 @@ def plan_team(
 @cache
 def _load_kernels(method: Method) -> None:
     """Plan for two robots that swap places: compiling and loading kernels is not to be taken from a time limit."""
+    if method == "prioritized_search":
+        _load_kernels("lacam")
     options: dict[str, Any] = {"cell_costs": np.zeros((3, 3))} if method == "prioritized_search" else {}
     ends = [(1, 0), (1, 2)]
     plan_team(np.zeros((3, 3), np.bool_), ends, ends[::-1], method, time_limit=math.inf, iterations=2, **options)
@@ -116,6 +124,8 @@ def _plan(
             return plan_joint(traffic, time_limit)
         case "prioritized_search":
             return plan_search(traffic, budget, rng)
+        case "lacam":
+            return plan_lacam(traffic, budget, rng)
         case "cbs":
             return plan_certified(traffic, time_limit, iterations, rng)
 
@@ -202,10 +212,10 @@ def _places(graph: GridGraph, cells: NDArray[np.int64], kind: str) -> NDArray[np
     return places
 
 
-def _check_reachable(graph: GridGraph, ends: NDArray[np.int64], blocked: NDArray[np.bool_]) -> None:
-    for robot, (start, goal) in enumerate(ends):
-        if graph.ahead(int(goal))[start] < UNREACHABLE:
-            continue
+def _check_reachable(traffic: Traffic, blocked: NDArray[np.bool_]) -> None:
+    graph = traffic.graph
+    for robot in np.flatnonzero(traffic.alone >= int(UNREACHABLE // STEP)).tolist():
+        start, goal = traffic.ends[robot]
         here, there = (tuple(int(x) for x in graph.cells[place]) for place in (start, goal))
         points = grid_graph_of(blocked, graph.connectivity, 0.0)
         if points.ahead(int(points.index[there]))[points.index[here]] < UNREACHABLE:

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import inlined, leaf
 from lidarena.planning.team.open_list import pop, push
-from lidarena.planning.team.search_arrays import PlaceCosts, Reservations, SearchMemory
+from lidarena.planning.team.search_arrays import PlaceCosts, Reservations, SearchMemory, counts_at, entry_of
 
 NO_WAY = -1
 """Every state has been searched."""
@@ -26,7 +26,7 @@ def free_from(reserved: Reservations, goal: int) -> int:
     if reserved.since[goal, 0] < 2**30:
         return -1
     for t in range(reserved.until[goal] - 1, -1, -1):
-        if reserved.table[goal, t] & 1:
+        if counts_at(reserved, goal, t) & 15:
             return t + 1
     return 0
 
@@ -38,19 +38,19 @@ def at_least(cost: int, rest: int) -> int:
 
 
 @leaf
-def _trace(nodes: NDArray[np.int32], state: int, times: int, path: NDArray[np.int32]) -> int:
-    """Write the places that lead to ``state`` into ``path``; return the number of steps, or GAVE_UP."""
+def _trace(nodes: NDArray[np.int64], entry: int, times: int, path: NDArray[np.int32]) -> int:
+    """Write the places that lead to the state of ``entry`` into ``path``; return the number of steps, or GAVE_UP."""
     length = 0
-    at = state
-    while nodes[at, 2] >= 0:
-        at = nodes[at, 2]
+    at = entry
+    while nodes[at, 3] >= 0:
+        at = nodes[at, 3]
         length += 1
     if length >= len(path):
         return -2
-    at = state
+    at = entry
     for t in range(length, -1, -1):
-        path[t] = at // times
-        at = nodes[at, 2]
+        path[t] = nodes[at, 0] // times
+        at = nodes[at, 3]
     return length
 
 
@@ -62,33 +62,36 @@ def _expand(
     last: int,
     rest: int,
     stamp: int,
-    state: int,
+    entry: int,
     memory: SearchMemory,
     size: int,
 ) -> int:
-    """Offer what the free moves from ``state`` lead to; return the open list's size.
+    """Offer what the free moves from the state of ``entry`` lead to; return the open list's size.
 
     Sets the sign of ``memory.limits[0]`` where the bound was in the way. The other arguments are ``find_route``'s.
     """
     nodes, limits, layer = memory.nodes, memory.limits, costs.layer
-    times = reserved.table.shape[1]
-    here, t = state // times, state % times
+    times = reserved.rows.shape[1] * 16
+    here, t = nodes[entry, 0] // times, nodes[entry, 0] % times
     later, row = min(t + 1, last), min(t + 1, len(layer) - 1)
-    taken = int(reserved.table[here, t]) if t < last else 0
+    taken = counts_at(reserved, here, t) if t < last else 0
     most = limits[0] if limits[0] >= 0 else ~limits[0]
     for m in range(9):
         there = int(neighbours[here, m])
-        if there < 0 or taken >> m & 1 or t >= reserved.since[here, m]:
+        if there < 0 or taken >> 4 * m & 15 or t >= reserved.since[here, m]:
             continue
-        spent = int(nodes[state, 1]) + 4096 + (1 if m > 4 else 0) + costs.base[there] + layer[row, there]
-        following = there * times + later
-        if nodes[following, 0] >= stamp and nodes[following, 1] <= spent:
+        spent = int(nodes[entry, 2]) + 4096 + (1 if m > 4 else 0) + costs.base[there] + layer[row, there]
+        following = entry_of(nodes, there * times + later, stamp)
+        met = nodes[following, 1] >= stamp
+        if met and nodes[following, 2] <= spent:
             continue  # one that is closed is opened again if it can be had for less: ``rest`` hides what that costs
         cost = at_least(spent + costs.ahead[there], rest)
         if cost > most:
             limits[0] = ~most
             continue
-        nodes[following, 0], nodes[following, 1], nodes[following, 2] = stamp, spent, state
+        limits[4] += 0 if met else 1
+        nodes[following, 0], nodes[following, 1] = there * times + later, stamp
+        nodes[following, 2], nodes[following, 3] = spent, entry
         size = push(memory.keys, memory.items, size, (cost << 31) - (spent ^ 4095), following)
     return size
 
@@ -118,29 +121,33 @@ def find_route(
         The number of steps, or NO_WAY or GAVE_UP.
     """
     nodes, keys, items, limits = memory.nodes, memory.keys, memory.items, memory.limits
-    times = reserved.table.shape[1]
+    times = reserved.rows.shape[1] * 16
     start, goal = ends[0], ends[1]
     stamp = limits[2] + 2  # of a state that was met; one more means that it is closed
-    limits[2], limits[3] = stamp, 0
+    limits[2], limits[3], limits[4] = stamp, 0, 1
     rest = free_from(reserved, goal)
     if rest < 0 or costs.ahead[start] >= 2**30:
         return -1
-    nodes[start * times, 0], nodes[start * times, 1], nodes[start * times, 2] = stamp, 0, -1
+    entry = entry_of(nodes, start * times, stamp)
+    nodes[entry, 0], nodes[entry, 1], nodes[entry, 2], nodes[entry, 3] = start * times, stamp, 0, -1
     cost = at_least(np.int64(costs.ahead[start]), rest)
     if cost > limits[0]:
         return -2
-    size = push(keys, items, np.int64(0), cost << 31, start * times)
+    size = push(keys, items, np.int64(0), cost << 31, entry)
     while size > 0:
-        state = np.int64(items[0])
+        entry = int(items[0])
         size = pop(keys, items, size)
-        if nodes[state, 0] > stamp:
+        if nodes[entry, 1] > stamp:
             continue
-        nodes[state, 0] = stamp + 1
-        here, t = state // times, state % times
+        nodes[entry, 1] = stamp + 1
+        here, t = nodes[entry, 0] // times, nodes[entry, 0] % times
         if here == goal and t >= rest:
-            return _trace(nodes, state, times, path)
+            return _trace(nodes, entry, times, path)
         limits[3] += 1
-        if limits[3] > limits[1] or size + 9 > len(keys):
+        if limits[3] > limits[1]:
             return -2
-        size = _expand(neighbours, costs, reserved, last, rest, stamp, state, memory, size)
+        if size + 9 > len(keys) or 4 * (limits[4] + 9) > 3 * len(nodes):
+            limits[5] = 1  # search_arrays.NO_STATES
+            return -2
+        size = _expand(neighbours, costs, reserved, last, rest, stamp, entry, memory, size)
     return -2 if limits[0] < 0 else -1

@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.lacam import Lacam, why_not
 from lidarena.planning.team.prioritized import longest_first
 from lidarena.planning.team.repair import Repair
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
@@ -20,6 +21,8 @@ from lidarena.planning.team.traffic import Traffic
 PATIENCE = 300
 """Neighbourhoods without a gain after which a plan counts as settled; large teams have more of them."""
 _PATIENCE_A_ROBOT = 4
+_SHARE_OF_ORDERS, _MOST_ORDERS = 0.25, 64  # of the time, before LaCAM looks for a plan
+_SHARE_OF_CONFIGURATIONS, _MOST_SLICES = 0.7, 100  # of the time left, to improve on LaCAM's plan
 _DELAYED = 0.5  # share of the robots of a random order that wait at their starts
 
 
@@ -54,17 +57,41 @@ def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tu
 
 def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> TeamPlan:
     """Promotion, then repair, within a budget."""
-    order, placed, tried = find_order(traffic, budget, rng)
+    order, placed, tried = find_order(traffic, budget.part(_SHARE_OF_ORDERS, _MOST_ORDERS), rng)
+    by = f"order {tried}"
+    search: Lacam | None = None
     if placed < len(order):
-        message = (
-            f"Robot {order[placed]} found no way past the robots before it in the last of {tried} orders of priority"
-            f" (failure-driven promotion, then random orders and delays)."
-        )
-        return failed_plan(traffic, message, order)
+        search = Lacam(traffic, int(rng.integers(2**31)))
+        status = search.run(budget.again(), first=True)
+        if not search.found:
+            message = (
+                f"{why_not(status, search.steps)} Before, robot {order[placed]} found no way past the robots before it"
+                f" in the last of {tried} orders of priority (failure-driven promotion, then random orders and delays)."
+            )
+            return failed_plan(traffic, message, order)
+        traffic.remove(order[:placed])
+        traffic.adopt(*search.paths())
+        by = f"LaCAM after {tried} orders of priority"
+        order = np.empty(0, np.int64)
     first = traffic.cost()
-    neighbourhoods = Repair(traffic, rng).run(budget, PATIENCE + _PATIENCE_A_ROBOT * len(traffic))
+    neighbourhoods = _improve(traffic, search, budget, rng)
     message = (
-        f"Solved by order {tried} at cost {first}; {neighbourhoods} neighbourhoods were replanned,"
+        f"Solved by {by} at cost {first}; {neighbourhoods} neighbourhoods were replanned,"
         f" which saved {first - traffic.cost()} steps."
     )
     return solved_plan(traffic, message, order=order)
+
+
+def _improve(traffic: Traffic, search: Lacam | None, budget: Budget, rng: np.random.Generator) -> int:
+    """Repair a plan; one of LaCAM's, once that settles, in turns with its search. Return the neighbourhoods tried."""
+    patience, everyone = PATIENCE + _PATIENCE_A_ROBOT * len(traffic), np.arange(len(traffic))
+    neighbourhoods = Repair(traffic, rng).run(budget, patience)
+    if search is None or traffic.cost() <= traffic.alone.sum():
+        return neighbourhoods
+    search.run(budget.part(_SHARE_OF_CONFIGURATIONS, _MOST_SLICES), first=False)
+    paths, lengths = search.paths()
+    if lengths.sum() < traffic.cost():
+        traffic.remove(everyone)
+        traffic.adopt(paths, lengths)
+        neighbourhoods += Repair(traffic, rng).run(budget, patience)
+    return neighbourhoods

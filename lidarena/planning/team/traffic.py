@@ -8,12 +8,21 @@ from numpy.typing import NDArray
 from lidarena.base.jit import inlined, leaf, merged
 from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph
 from lidarena.planning.team.interval_route import find_quick_route
-from lidarena.planning.team.reservations import clear, reserve
+from lidarena.planning.team.reservations import clear, has_room, release, reserve, rest
 from lidarena.planning.team.route import find_route
-from lidarena.planning.team.search_arrays import GraphArrays, PlaceCosts, Reservations, SearchMemory, TeamPaths
+from lidarena.planning.team.search_arrays import (
+    NO_ROWS,
+    GraphArrays,
+    PlaceCosts,
+    Reservations,
+    SearchMemory,
+    TeamPaths,
+    with_more_room,
+)
 
 FlatArrays = tuple[NDArray[Any], ...]
 NO_BOUND = np.int64(2**31 - 1)
+_SPARE = 32  # steps that paths may get longer than those that are taken over
 
 
 @merged
@@ -55,6 +64,9 @@ def _plan_in_order(
             steps = find_quick_route(graph.neighbours, ahead[robot], reserved, ends[robot], delay, memory, path)
         if steps < 0:
             return k
+        if not has_room(steps, graph, reserved):
+            memory.limits[5] = 2  # search_arrays.NO_ROWS
+            return k
         budget = budget - steps if budget >= 0 else budget
         team.lengths[robot] = steps
         team.placed[robot] = True
@@ -63,10 +75,10 @@ def _plan_in_order(
 
 
 @leaf
-def _place_all(graph: GraphArrays, reserved: Reservations, team: TeamPaths) -> None:
+def _rest_all(graph: GraphArrays, reserved: Reservations, team: TeamPaths) -> None:
     for robot in range(len(team.lengths)):
         if team.placed[robot]:
-            reserve(team.paths[robot], team.lengths[robot], graph, reserved)
+            rest(team.paths[robot, team.lengths[robot]], team.lengths[robot], graph, reserved)
 
 
 @leaf
@@ -78,18 +90,18 @@ def _clear_some(robots: NDArray[np.int64], graph: GraphArrays, reserved: Reserva
 @leaf
 def _remove(robots: NDArray[np.int64], arrays: FlatArrays) -> None:
     """Take robots' paths out of the reservations; arguments as ``_plan_group``."""
-    graph, reserved, team = GraphArrays(*arrays[0:5]), Reservations(*arrays[8:11]), TeamPaths(*arrays[15:22])
+    graph, reserved, team = GraphArrays(*arrays[0:5]), Reservations(*arrays[8:14]), TeamPaths(*arrays[18:25])
     for k in range(len(robots)):
         if team.placed[robots[k]]:
             clear(team.paths[robots[k]], team.lengths[robots[k]], graph, reserved)
             team.placed[robots[k]] = False
-    _place_all(graph, reserved, team)
+    _rest_all(graph, reserved, team)
 
 
 @leaf
 def _place(robots: NDArray[np.int64], arrays: FlatArrays) -> None:
     """Enter robots' paths into the reservations; arguments as ``_plan_group``."""
-    graph, reserved, team = GraphArrays(*arrays[0:5]), Reservations(*arrays[8:11]), TeamPaths(*arrays[15:22])
+    graph, reserved, team = GraphArrays(*arrays[0:5]), Reservations(*arrays[8:14]), TeamPaths(*arrays[18:25])
     for k in range(len(robots)):
         reserve(team.paths[robots[k]], team.lengths[robots[k]], graph, reserved)
         team.placed[robots[k]] = True
@@ -113,7 +125,7 @@ def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budge
         How many robots were placed before one failed; where ``replan`` the steps saved, -1 if the old paths were kept.
     """
     graph, costs = GraphArrays(*arrays[0:5]), PlaceCosts(*arrays[5:8])
-    reserved, memory, team = Reservations(*arrays[8:11]), SearchMemory(*arrays[11:15]), TeamPaths(*arrays[15:22])
+    reserved, memory, team = Reservations(*arrays[8:14]), SearchMemory(*arrays[14:18]), TeamPaths(*arrays[18:25])
     if replan:
         budget = 0
         for k in range(len(group)):
@@ -123,7 +135,7 @@ def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budge
         _clear_some(group, graph, reserved, team)
         for k in range(len(group)):
             team.placed[group[k]] = False
-        _place_all(graph, reserved, team)
+        _rest_all(graph, reserved, team)
     planned = _plan_in_order(group, graph, costs, reserved, memory, team, timed, budget)
     if not replan:
         return planned
@@ -135,7 +147,8 @@ def _plan_group(group: NDArray[np.int64], arrays: FlatArrays, timed: bool, budge
     for k in range(len(group)):
         team.placed[group[k]] = True
         _copy_path(team.kept_paths, team.kept_lengths, team.paths, team.lengths, group[k])
-    _place_all(graph, reserved, team)
+        reserve(team.paths[group[k]], team.lengths[group[k]], graph, reserved)
+    _rest_all(graph, reserved, team)
     return -1
 
 
@@ -178,37 +191,67 @@ class Traffic:
     ) -> None:
         self.graph, self.ends = graph, ends
         places, team = len(graph), len(ends)
-        if surcharge is None:
-            self.ahead = np.array([graph.ahead(int(goal)) for _, goal in ends], np.int32).reshape(team, places)
-        else:
-            self.ahead = np.array([graph.ahead_with(int(goal), surcharge) for _, goal in ends]).reshape(team, places)
-        self.alone = np.array([int(graph.ahead(int(goal))[start]) for start, goal in ends], np.int64) // int(STEP)
+        self.ahead = np.empty((team, places), np.int32)
+        self.alone = np.empty(team, np.int64)
+        for robot, (start, goal) in enumerate(ends.tolist()):
+            plain = graph.ahead(goal)
+            self.alone[robot] = int(plain[start]) // int(STEP)
+            self.ahead[robot] = plain if surcharge is None else graph.ahead_with(goal, surcharge)
         # no layer of states beyond it is ever searched: everyone in turn, in the worst order, is far more than needed
         reached = self.alone[self.alone < int(UNREACHABLE // STEP)]
         self.capacity = int(2 * reached.max(initial=0) + 4 * team + 64)
         self.base = np.zeros(places, np.int32) if surcharge is None else surcharge
         self.timed = timed or surcharge is not None
         self.layer = np.zeros((1, places), np.int32)
-        self._tables = graph.borrow(self.capacity)
-        self.reserved, self.memory = self._tables
-        self.memory.limits[:2] = NO_BOUND
-        paths, lengths = np.zeros((team, self.capacity), np.int32), np.zeros(team, np.int64)
-        self.delays, self.paths, self.lengths = np.zeros(team, np.int64), paths, lengths
+        self.delays, self.lengths = np.zeros(team, np.int64), np.zeros(team, np.int64)
         self.placed = np.zeros(team, np.bool_)
-        self._team = TeamPaths(
-            ends, self.delays, paths, lengths, self.placed, np.zeros_like(paths), np.zeros_like(lengths)
-        )
+        self._allocate()
 
     def __len__(self) -> int:
         """Number of robots."""
         return len(self.ends)
+
+    def _allocate(self) -> None:
+        """Get tables and paths with room for ``capacity`` steps."""
+        self._tables = self.graph.borrow(self.capacity)
+        self.reserved, self.memory = self._tables
+        self.memory.limits[:2] = NO_BOUND
+        self.paths = np.zeros((len(self), self.capacity), np.int32)
+        kept = np.zeros_like(self.paths), np.zeros_like(self.lengths)
+        self._team = TeamPaths(self.ends, self.delays, self.paths, self.lengths, self.placed, *kept)
+
+    def adopt(self, paths: NDArray[np.int32], lengths: NDArray[np.int64]) -> None:
+        """Take over a plan without conflicts and place everyone; nobody may be placed.
+
+        Args:
+            paths: (k, T) places, one a time step, valid up to ``lengths``.
+            lengths: (k,) steps until each robot stays at its goal.
+        """
+        if paths.shape[1] + _SPARE >= self.capacity:
+            self.graph.give_back(self._tables)
+            self.capacity = paths.shape[1] + paths.shape[1] // 4 + 2 * _SPARE
+            if len(self.layer) > 1:
+                self.layer = np.zeros((1, len(self.graph)), np.int32)
+            self._allocate()
+        self.paths[:, : paths.shape[1]] = paths
+        self.lengths[:] = lengths
+        self.place(np.arange(len(self)))
 
     def close(self) -> None:
         """Empty the tables and give the room for searches back; the paths stay."""
         placed = self.placed.copy()
         _remove(np.flatnonzero(placed), self._arrays)
         self.placed[:] = placed
+        release(self.reserved)
         self.graph.give_back(self._tables)
+
+    def make_room(self) -> bool:
+        """Enlarge the tables if the last search had too little room; False if it had enough, or no more can be had."""
+        larger = with_more_room(self._tables)
+        if larger is not None:
+            self._tables = larger
+            self.reserved, self.memory = larger
+        return larger is not None
 
     def _plan(self, group: NDArray[np.int64], budget: int, replan: bool) -> int:
         return _plan_group(group, self._arrays, self.timed, budget, replan)
@@ -229,7 +272,12 @@ class Traffic:
         Returns:
             How many were placed before one failed.
         """
-        return self._plan(order, budget, False)
+        done = 0
+        while True:
+            left = budget - int(self.lengths[order[:done]].sum()) if budget >= 0 else -1
+            done += self._plan(order[done:], left, False)
+            if done == len(order) or not self.make_room():
+                return done
 
     def replan(self, group: NDArray[np.int64]) -> int:
         """Replan robots, all of them placed, in this order; the old paths stay unless the sum is no larger.
@@ -237,7 +285,9 @@ class Traffic:
         Returns:
             Steps saved; -1 if the old paths were kept.
         """
-        return self._plan(group, -1, True)
+        gain = self._plan(group, -1, True)
+        self.make_room()
+        return gain
 
     def remove(self, robots: NDArray[np.int64]) -> None:
         """Take robots' paths out of the tables; the paths themselves stay where they are."""
@@ -245,7 +295,11 @@ class Traffic:
 
     def place(self, robots: NDArray[np.int64]) -> None:
         """Enter robots' paths, as they are, into the tables."""
-        _place(robots, self._arrays)
+        for robot in robots:
+            while not has_room(self.lengths[robot], self.graph.arrays, self.reserved):
+                self.memory.limits[5] = NO_ROWS
+                self.make_room()
+            _place(np.array([robot]), self._arrays)
 
     @property
     def expanded(self) -> int:

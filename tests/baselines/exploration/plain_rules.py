@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from lidarena.baselines.exploration.driving import Terrain
 from lidarena.baselines.exploration.frontier import FrontierPolicy
 from lidarena.baselines.exploration.rules import visible_unknown
+from lidarena.envs.exploration.goal_choice.options import GoalChoiceOptions
 from lidarena.planning.grid.frontiers import Frontier, find_frontiers
 from lidarena.planning.grid.way_lengths import LEG, first_leg, way_lengths
 
@@ -23,7 +24,8 @@ class PlainRule(FrontierPolicy):
     kept_by = 0.5
 
     def __init__(self, env: Any) -> None:
-        super().__init__(env, persistence=self.kept_by, min_frontier_size=0.2, last_frontier_size=0.2)
+        options = {"persistence": self.kept_by, "planner_period": GoalChoiceOptions.choice_period}
+        super().__init__(env, min_frontier_size=0.2, last_frontier_size=0.2, **options)
 
     def _search(self, terrain: Terrain, size: float) -> list[Frontier]:
         side = terrain.around.resolution

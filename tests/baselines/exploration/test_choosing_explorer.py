@@ -24,7 +24,7 @@ def test_it_chooses_as_in_the_environment_of_choices() -> None:
     while not policy.finished:
         observation, _, ended, _, info = env.step(policy.act(observation, info))
         assert not ended
-    choices = gym.make("lidarena/GoalChoice-v0", map=MAZE, slam="truth", preference=0.3, choice_period=1.0)
+    choices = gym.make("lidarena/GoalChoice-v0", map=MAZE, slam="truth", preference=0.3)
     rows, _ = choices.reset(seed=2)
     for k, told in enumerate(asked, 1):
         assert np.array_equal(np.clip(told, -60.0, 60.0), rows)

@@ -77,6 +77,6 @@ class Nothing:
 def test_beams_of_a_strangers_observation_come_from_the_info() -> None:
     env = ExplorationEnv(map="env2", observation=Nothing, slam="truth", lidar={"noise": 0.0})
     robot, (observation, info) = Robot(env), env.reset(seed=0)
-    assert robot.hits(observation, np.zeros(3), 5.0).shape == (0, 2) and not robot.would_touch(0, observation)
+    assert robot.hits(observation, np.zeros(3), 5.0).shape == (0, 2) and not robot.sees_what_is_near(observation)
     hits = robot.hits(robot.beams_in(observation, info), info["pose"], 5.0)
     assert len(hits) > 50 and np.abs(env.floorplan.clearance(hits)).max() < 1e-4

@@ -55,33 +55,6 @@ def test_other_action_spaces_are_refused(space):
         Robot(Env(space))
 
 
-@pytest.mark.parametrize(
-    ("observation", "touching"),
-    [
-        (beams(), []),
-        (beams(front=0.26 / 3.5), []),
-        (beams(front=0.23 / 3.5), [0]),
-        (beams(front=0.15 / 3.5), [0, 1, 2]),
-        (beams(left45=0.20 / 3.5), [0]),
-        (beams(left=0.13 / 3.5, right=0.13 / 3.5), []),  # on an arc it drives past what is beside it
-        (beams(left=0.2 / 3.5, right=0.2 / 3.5), []),
-    ],
-)
-def test_beams_tell_which_commands_would_touch(observation, touching):
-    robot = Robot(Env(DISCRETE))
-    assert [k for k in range(3) if robot.would_touch(k, observation)] == touching
-
-
-def test_scans_are_understood_as_well():
-    robot = Robot(Env(DISCRETE))
-    scan = np.ones(360, np.float32)
-    assert not robot.would_touch(0, {"scan": scan})
-    scan[350] = 0.2 / 3.5
-    assert robot.would_touch(0, {"scan": scan})
-    scan[350], scan[180] = 1.0, 0.13 / 3.5
-    assert not robot.would_touch(0, {"scan": scan})  # it drives away from what is behind
-
-
 def test_hits_are_where_the_beams_end() -> None:
     observation = np.array([0.1, 1.0, 0.05, 0.5, 0.0, 0.0, 0.0], np.float32)  # over 3.5 m; the last two are no beams
     hits = Robot(Env(DISCRETE)).hits(observation, np.array([1.0, 2.0, math.pi / 2]), reach=0.6)
@@ -90,3 +63,17 @@ def test_hits_are_where_the_beams_end() -> None:
     assert Robot(Env(DISCRETE, options=options)).hits(scan, np.zeros(3), reach=0.6) == pytest.approx(
         np.array([[0.35, 0.0], [0.0, 0.35], [-0.35, 0.0], [0.0, -0.35]]), abs=1e-9
     )
+
+
+def test_what_is_near_is_seen_by_whole_scans_of_many_beams_only() -> None:
+    scan, few = {"scan": np.ones(360)}, ExplorationOptions.checked({"lidar": {"beams": 8}})
+    behind = ExplorationOptions.checked({"lidar": {"field_of_view": 3.0}})
+    assert Robot(Env(DISCRETE)).sees_what_is_near(scan) and not Robot(Env(DISCRETE)).sees_what_is_near(beams())
+    assert not Robot(Env(DISCRETE, options=few)).sees_what_is_near({"scan": np.ones(8)})
+    assert not Robot(Env(DISCRETE, options=behind)).sees_what_is_near(scan)
+
+
+def test_a_noisier_lidar_is_kept_farther_away_from_what_it_hits() -> None:
+    noisy = ExplorationOptions.checked({"lidar": {"noise": 0.05}})
+    assert Robot(Env(DISCRETE)).least_distance == pytest.approx(0.135)
+    assert Robot(Env(DISCRETE, options=noisy)).least_distance == pytest.approx(0.195)

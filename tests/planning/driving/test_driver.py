@@ -3,6 +3,7 @@ import numpy as np
 from lidarena.baselines.exploration.driving import Driver
 from lidarena.baselines.exploration.robot_interface import Robot
 from lidarena.planning.driving import driver as compiled
+from lidarena.planning.driving.following import next_command
 from lidarena.planning.driving.survey import survey
 from tests.planning.driving.worlds import hired, make_world, perceived
 
@@ -30,7 +31,7 @@ def test_a_drive_to_a_place_is_that_of_the_plain_driver() -> None:
                 goal = tuple(terrain.around.points(cells[len(cells) * (step + 30) // 160 :][:1])[0].tolist())
             assert plain.go(goal, terrain) == compiled.go(0, *goal, told, settings, drive)
         action = plain.action()
-        assert action == compiled.next_command(0, told, settings, drive)
+        assert action == next_command(0, told, settings, drive)
         observation, _, ended, _, info = env.step(action)
         driven += 1
         assert not ended

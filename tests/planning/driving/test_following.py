@@ -1,7 +1,7 @@
 import numpy as np
 
 from lidarena.planning.driving.driver import sense
-from lidarena.planning.driving.following import can_loiter, clear_queue, has_queue, loiter, plan_commands
+from lidarena.planning.driving.following import can_loiter, clear_queue, has_queue, next_command, plan_commands
 from lidarena.planning.driving.survey import survey
 from tests.planning.driving.worlds import hired, make_world, perceived
 
@@ -28,4 +28,4 @@ def test_a_robot_with_room_around_it_may_loiter_to_the_left() -> None:
     told.scans[:] = 3.5
     sense(0, told, settings, drive)
     assert can_loiter(0, told.poses[0], drive.near, settings)
-    assert loiter(0, told, settings, drive) == 1 == drive.turning[0]
+    assert next_command(0, told, settings, drive) == 1 == drive.turning[0] == drive.given[0]

@@ -7,6 +7,7 @@ import numpy as np
 
 from lidarena.baselines.exploration.robot_interface import Robot
 from lidarena.envs.exploration.goal_choice.explorers import driver_settings, explorer_settings
+from lidarena.envs.exploration.goal_choice.options import GoalChoiceOptions
 from lidarena.planning.driving.explorer import Explorers, ExplorerSettings, begin, empty_explorers
 from lidarena.planning.driving.state import DriverSettings, Perceptions
 
@@ -22,8 +23,8 @@ def make_world(seed: int = 1, **keywords: Any) -> tuple[gym.Env[Any, Any], dict[
 
 def perceived(info: dict[str, Any]) -> Perceptions:
     """What a driver is told of a single world."""
-    pose, scan = np.asarray(info["pose"], np.float64), np.asarray(info["scan"], np.float32)
-    return Perceptions(np.ascontiguousarray(info["map"])[None], info["origin"][None], pose[None], scan[None])
+    pose, scan = np.array(info["pose"], np.float64), np.array(info["scan"], np.float32)
+    return Perceptions(np.array(info["map"])[None], np.array(info["origin"])[None], pose[None], scan[None])
 
 
 def hired(
@@ -34,4 +35,4 @@ def hired(
     driver = driver_settings(robot.options, robot.commands, float(info["resolution"]))
     explorers = empty_explorers(1, *info["map"].shape, most, driver)
     begin(explorers, 0)
-    return driver, explorer_settings(robot.period, 1.0, 0.2, places), explorers
+    return driver, explorer_settings(robot.period, GoalChoiceOptions.choice_period, 0.2, places), explorers

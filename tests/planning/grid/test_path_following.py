@@ -150,20 +150,11 @@ def test_keeps_the_old_plan_where_it_finds_no_new_one():
     np.testing.assert_array_equal(follower.planned, before)
 
 
-def test_loiters_to_the_left_unless_a_wall_is_there():
+def test_a_plan_that_beams_contradict_is_not_taken():
     _, around = world("######", "#    #", "######", side=20)
-    left, right = 1, 2
-    assert PathFollower(DISCRETE).loiter(np.array([2.5, 1.5, 0.0]), around) == left
-    assert PathFollower(DISCRETE).loiter(np.array([2.5, 1.75, 0.0]), around) == right
-    assert PathFollower(DISCRETE).loiter(np.array([2.5, 1.25, 0.0]), around) == left
-    assert PathFollower(CONTINUOUS).loiter(np.array([2.5, 1.75, 0.0]), around) == 1
-
-
-def test_loitering_keeps_its_sense_of_rotation():
-    _, around = world("######", "#    #", "######", side=20)
-    follower, here, done = PathFollower(DISCRETE), np.array([2.5, 1.62, 0.0]), []
-    for _ in range(120):
-        done.append(follower.loiter(here, around))
-        here = predict(here, DISCRETE, np.array(done[-1:]))[0]
-    assert len(set(done)) == 1
-    assert math.dist(here[:2], (2.5, 1.62)) < 0.4
+    pose = np.array([1.5, 1.5, 0.0])
+    follower = PathFollower(DISCRETE, keep=0.135)
+    follower.points = np.array([[0.5, y] for y in np.arange(-1.0, 1.0, 0.02)])  # a wall across the way
+    assert not follower.plan(line(1.5, 1.5, 4.0, 1.5), pose, around) and not len(follower.planned)
+    follower.points = np.array([[-0.5, 0.0]])
+    assert follower.plan(line(1.5, 1.5, 4.0, 1.5), pose, around) and len(follower.planned)

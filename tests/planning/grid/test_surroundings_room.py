@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy import ndimage
 
-from lidarena.planning.grid.path_following import PathFollower, blocked_ahead, lookahead_point, predict
+from lidarena.planning.grid.path_following import blocked_ahead, lookahead_point, predict
 from lidarena.planning.grid.steering import Commands, loiter_gap, steer, tightest
 from lidarena.planning.grid.surroundings import Surroundings, gap_at, in_sight
 from tests.planning.grid.test_surroundings import RES, room
@@ -117,19 +117,6 @@ def test_a_path_is_blocked_where_a_point_that_is_left_of_it_is_too_near(
 
 
 FREE = st.tuples(st.floats(0.3, 2.7), st.floats(0.3, 1.7), TURN)
-
-
-@settings(max_examples=30, deadline=None)
-@given(FREE, st.sampled_from([DISCRETE, CONTINUOUS]))
-def test_whoever_may_loiter_does_so_for_ever_without_touching(
-    pose: tuple[float, float, float], commands: Commands
-) -> None:
-    follower, here = PathFollower(commands), np.array(pose)
-    if gap_of(pose) < 0.15 or not follower.can_loiter(here, HALL):
-        return
-    for _ in range(250):
-        here = predict(here, commands, np.array([follower.loiter(here, HALL)]))[0]
-        assert gap_of(here) > follower.least_margin - RES
 
 
 @settings(max_examples=25, deadline=None)

@@ -132,4 +132,11 @@ def hall(*ends: tuple[int, int], rows: int = 5, cols: int = 9) -> Traffic:
 
 def is_empty(reserved: Reservations) -> bool:
     """Whether no move is taken at any time."""
-    return not reserved.table.any() and not reserved.until.any() and bool((reserved.since == NEVER).all())
+    return not reserved.counts.any() and bool((reserved.since == NEVER).all())
+
+
+def taken_moves(reserved: Reservations, times: int) -> np.ndarray:
+    """Whether each move from each place is taken in each step by somebody who passes: (n, times, 9)."""
+    shifts = 4 * np.arange(9)
+    counts = reserved.counts[reserved.rows].reshape(len(reserved.rows), -1)[:, :times]
+    return (counts[:, :, None] >> shifts & 15) > 0

@@ -48,3 +48,12 @@ def test_a_refusal_for_want_of_time_uses_no_iteration(clock: list[float]) -> Non
 def test_nothing_is_allowed_by_nothing() -> None:
     assert not Budget(math.inf, 0).take()
     assert Budget(0.0).spent() and not Budget(0.0).take()
+
+
+def test_a_part_takes_its_iterations_from_the_whole_and_has_limits_of_its_own() -> None:
+    whole = Budget(float("inf"), 3)
+    part = whole.part(0.5, 2)
+    assert [part.take() for _ in range(3)] == [True, True, False]
+    assert whole.take() and not whole.take()
+    assert not whole.part(0.5).take()
+    assert Budget(10.0).part(0.1).left() <= 1.0

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from lidarena.planning.team.constraints import Constraint, forbid, permit, split
 from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import MOVES
-from lidarena.planning.team.search_arrays import empty_tables
+from lidarena.planning.team.search_arrays import counts_at, empty_tables
 from tests.planning.team.problems import is_empty, meet
 
 SIDE, TIMES = 8, 12
@@ -80,11 +80,11 @@ def test_one_at_its_goal_is_never_come_close_to_or_arrives_later(radius: float, 
 def test_what_is_forbidden_stands_in_the_tables_until_it_is_permitted(moves: list[tuple[int, int]], time: int) -> None:
     for forever in (False, True):
         reserved = empty_tables(6, TIMES).reserved
-        table, until, since = reserved
+        until, since = reserved.until, reserved.since
         forbid(np.array(moves, np.int64), time, forever, reserved)
         wanted = {(place, m) for place, bits in moves for m in range(9) if bits >> m & 1}
         for place, m, t in itertools.product(range(6), range(9), range(TIMES)):
-            taken = bool((t < until[place] and table[place, t] >> m & 1) or t >= since[place, m])
+            taken = bool((t < until[place] and counts_at(reserved, place, t) >> 4 * m & 15) or t >= since[place, m])
             assert taken == ((place, m) in wanted and (t >= time if forever else t == time))
         permit(np.array(moves, np.int64), time, forever, reserved)
         assert is_empty(reserved)

@@ -99,7 +99,7 @@ def test_a_place_is_the_number_of_its_cell() -> None:
     assert found.place(np.array([1, 1])) == -1
 
 
-@pytest.mark.parametrize(("first", "second", "same"), [(30, 30, True), (30, 20, True), (20, 30, False)])
+@pytest.mark.parametrize(("first", "second", "same"), [(30, 30, True), (30, 20, True), (20, 40, False)])
 def test_tables_are_lent_again_if_it_is_large_enough(first: int, second: int, same: bool) -> None:
     found = GridGraph(np.zeros((3, 3), bool), 4, 0.0)
     one = found.borrow(first)

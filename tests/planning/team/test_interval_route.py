@@ -4,7 +4,7 @@ import numpy as np
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
-from tests.planning.team.problems import Problem, problems, traffic_of
+from tests.planning.team.problems import Problem, problems, taken_moves, traffic_of
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
@@ -23,7 +23,7 @@ def test_safe_intervals_find_what_places_at_times_find(problem):
             slow.remove(one)  # the same path for both, so that the next robot meets the same tables
             slow.paths[robot], slow.lengths[robot] = quick.paths[robot], quick.lengths[robot]
             slow.place(one)
-    assert np.array_equal(quick.reserved.table[:, : quick.capacity], slow.reserved.table[:, : quick.capacity])
+    assert np.array_equal(*(taken_moves(traffic.reserved, quick.capacity) for traffic in (quick, slow)))
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=SLOW)

@@ -73,4 +73,6 @@ def test_footprints_are_the_same_table_in_rows(apart: float, connectivity: int) 
     assert begins[0] == 0 and begins[-1] == len(entries) and len(begins) == connectivity + 2
     for move, found in table.items():
         rows = entries[begins[move] : begins[move + 1]]
-        assert {int(offset): int(bits) for offset, bits in rows} == {r * stride + c: b for (r, c), b in found.items()}
+        assert {int(row[0]): int(row[1]) for row in rows} == {r * stride + c: b for (r, c), b in found.items()}
+        for _, bits, ones in rows.tolist():
+            assert [ones >> 4 * m & 15 for m in range(9)] == [bits >> m & 1 for m in range(9)]

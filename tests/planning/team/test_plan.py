@@ -228,4 +228,4 @@ def test_loading_kernels_is_not_taken_from_the_time_limit(method, monkeypatch):
     _load_kernels.cache_clear()
     for _ in range(2):
         plan_team(OPEN, [(0, 0)], [(1, 1)], method, time_limit=5.0)
-    assert limits == [math.inf, 5.0, 5.0]
+    assert limits[-2:] == [5.0, 5.0] and set(limits[:-2]) == {math.inf}

@@ -8,10 +8,10 @@ from hypothesis import strategies as st
 
 from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.moves import MOVES
-from lidarena.planning.team.reservations import clear, move_between, reserve
+from lidarena.planning.team.reservations import clear, has_room, move_between, release, reserve, rest
 from lidarena.planning.team.route import free_from
-from lidarena.planning.team.search_arrays import empty_tables
-from tests.planning.team.problems import is_empty, meet
+from lidarena.planning.team.search_arrays import counts_at, empty_tables
+from tests.planning.team.problems import is_empty, meet, taken_moves
 from tests.planning.team.walks import Walks, cell, walks
 
 TIMES = 16
@@ -24,14 +24,14 @@ class Tables:
         places = len(team.graph)
         self.team = team
         self.reserved = empty_tables(places, TIMES).reserved
-        self.table, self.until, self.since = self.reserved
+        self.until, self.since = self.reserved.until, self.reserved.since
 
     def arrays(self, robot: int) -> tuple:
         graph, length = self.team.graph, int(self.team.lengths[robot])
         return self.team.paths[robot], length, graph.arrays, self.reserved
 
     def taken(self, place: int, move: int, t: int) -> bool:
-        reserved = t < self.until[place] and self.table[place, t] >> move & 1
+        reserved = t < self.until[place] and counts_at(self.reserved, place, t) >> 4 * move & 15
         return bool(reserved or t >= self.since[place, move])
 
 
@@ -60,12 +60,28 @@ def test_clearing_empties_what_reserving_filled(team: Walks) -> None:
     for robot in (0, 1):
         reserve(*tables.arrays(robot))
     clear(*tables.arrays(0))
-    reserve(*tables.arrays(1))  # whoever else had entries there must be reserved again
+    last = team.lengths[1]
+    rest(team.paths[1, last], last, team.graph.arrays, tables.reserved)  # whoever rests nearby is entered again
     reserve(*alone.arrays(1))
-    assert np.array_equal(tables.table, alone.table) and np.array_equal(tables.since, alone.since)
-    assert np.array_equal(tables.until, alone.until)
+    assert np.array_equal(taken_moves(tables.reserved, TIMES), taken_moves(alone.reserved, TIMES))
+    assert np.array_equal(tables.since, alone.since)
     clear(*tables.arrays(1))
     assert is_empty(tables.reserved)
+    release(tables.reserved)
+    assert not tables.reserved.rows.any() and tables.reserved.used[0] == 1 and not tables.until.any()
+
+
+@settings(max_examples=20, deadline=None)
+@given(walks(robots=1))
+def test_there_is_room_for_a_path_until_the_rows_are_used_up(team: Walks) -> None:
+    tables = Tables(team)
+    for _ in range(40):
+        if not has_room(int(team.lengths[0]), team.graph.arrays, tables.reserved):
+            break
+        reserve(*tables.arrays(0))
+        assert tables.reserved.used[0] <= len(tables.reserved.counts)
+        tables.reserved.used[0] += 100
+    assert not has_room(10**6, team.graph.arrays, tables.reserved)
 
 
 @settings(max_examples=30, deadline=None)

@@ -9,6 +9,7 @@ from lidarena.base.jit import kernel
 from lidarena.envs.exploration.actions import discrete_commands
 from lidarena.envs.exploration.goal_choice.features import Circumstances, describe
 from lidarena.envs.exploration.options import ROBOT, ExplorationOptions
+from lidarena.envs.exploration.room import least_distance, sees_what_is_near
 from lidarena.planning.driving.explorer import (
     CHOOSES,
     DRIVES,
@@ -18,12 +19,10 @@ from lidarena.planning.driving.explorer import (
     command,
     set_out,
 )
-from lidarena.planning.driving.state import DriverSettings, Perceptions, make_settings
+from lidarena.planning.driving.state import DriverSettings, LidarView, Perceptions, make_settings
 from lidarena.planning.grid.steering import Commands
 from lidarena.slam.readings import Share, next_world
 
-SLACK = 0.03
-"""Room beside the collision distance that commands leave, three sigma of DA-SLAM's lidar or of another one's [m]."""
 _TIMEOUT, _PATIENCE, _FRUITLESS = 30.0, 2.0, 120.0  # [s]
 _ADVANTAGE_RADIUS = 15.0  # [m], Ericson et al.'s
 
@@ -51,8 +50,9 @@ class Crew(NamedTuple):
 def driver_settings(options: ExplorationOptions, commands: Commands, resolution: float) -> DriverSettings:
     """Return how a world's robot drives with some commands."""
     robot, lidar = options.robot, options.lidar
-    extra, keep = robot.bumper - ROBOT.bumper, robot.bumper + max(SLACK, 3.0 * lidar.noise)
-    return make_settings(commands, lidar.angles, lidar.max_range, extra, keep, resolution)
+    view = LidarView(lidar.angles, sees_what_is_near(options))
+    extra = robot.bumper - ROBOT.bumper
+    return make_settings(commands, view, lidar.max_range, extra, least_distance(options), resolution)
 
 
 def discrete_driver(options: ExplorationOptions, resolution: float) -> DriverSettings:
