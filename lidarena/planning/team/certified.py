@@ -27,7 +27,7 @@ def plan_certified(traffic: Traffic, seconds: float, iterations: int | None, rng
         rng: For prioritized search.
     """
     budget = Budget(seconds)
-    order, placed, _ = find_order(traffic, Budget(seconds * _SHARE_OF_SEARCH, iterations), rng)
+    order, placed, _ = find_order(traffic, Budget(seconds * _SHARE_OF_SEARCH, iterations), rng, budget)
     known: int | None = None
     if placed == len(order):
         Repair(traffic, rng).run(Budget(seconds * _SHARE_OF_SEARCH, iterations), _PATIENCE)

@@ -23,16 +23,32 @@ PATIENCE = 300
 _PATIENCE_A_ROBOT = 4
 _SHARE_OF_ORDERS, _MOST_ORDERS = 0.25, 64  # of the time, before LaCAM looks for a plan
 _SHARE_OF_CONFIGURATIONS, _MOST_SLICES = 0.7, 100  # of the time left, to improve on LaCAM's plan
+_PART = 16  # robots that are planned between two looks at the clock
 _DELAYED = 0.5  # share of the robots of a random order that wait at their starts
 
 
-def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tuple[NDArray[np.int64], int, int]:
+def _plan_in_parts(traffic: Traffic, order: NDArray[np.int64], budget: Budget) -> int:
+    """Plan robots in an order, with a look at the clock now and then; return how many were placed."""
+    placed = 0
+    while placed < len(order):
+        part = order[placed : placed + _PART]
+        done = traffic.plan(part)
+        placed += done
+        if done < len(part) or budget.spent():
+            break
+    return placed
+
+
+def find_order(
+    traffic: Traffic, budget: Budget, rng: np.random.Generator, whole: Budget | None = None
+) -> tuple[NDArray[np.int64], int, int]:
     """Plan a team with failure-driven promotion.
 
     Args:
         traffic: The team, no robot placed; afterwards everyone, or as many as the last order let through.
         budget: Time and orders left; the first order is always tried.
         rng: For the orders after one that comes back.
+        whole: Time after which even the first order is given up; None = that of ``budget``.
 
     Returns:
         The last order; how many of its robots were placed; how many orders were tried.
@@ -41,7 +57,7 @@ def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tu
     seen = set()
     while True:
         tried += 1
-        placed = traffic.plan(order)
+        placed = _plan_in_parts(traffic, order, whole or budget)
         traffic.delays[:] = 0
         if placed == len(order) or len(order) == 1 or not budget.take():
             return order, placed, tried
@@ -57,7 +73,7 @@ def find_order(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tu
 
 def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> TeamPlan:
     """Promotion, then repair, within a budget."""
-    order, placed, tried = find_order(traffic, budget.part(_SHARE_OF_ORDERS, _MOST_ORDERS), rng)
+    order, placed, tried = find_order(traffic, budget.part(_SHARE_OF_ORDERS, _MOST_ORDERS), rng, budget)
     by = f"order {tried}"
     search: Lacam | None = None
     if placed < len(order):
