@@ -40,4 +40,4 @@ def observe(vehicle: Vehicle) -> NDArray[np.float32]:
         ideal / 64.0,
         odometry.matches / max(features, 1),
     ])  # fmt: skip
-    return np.clip(seen, 0.0, LARGEST).astype(np.float32)
+    return np.asarray(np.clip(seen, 0.0, LARGEST), np.float32)
