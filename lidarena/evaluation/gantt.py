@@ -28,12 +28,14 @@ class GanttChart:
         actions: Names.
         deadline: [s].
         height: Of a lane, in seconds, so that the picture has a pleasant shape.
+        axis_titles: Of x and y.
     """
 
     parts: NDArray[np.float64]
     actions: tuple[str, ...]
     deadline: float
     height: float
+    axis_titles: tuple[str, str] = ("time (s)", "")
 
     @classmethod
     def of(cls, recording: Recording) -> "GanttChart | None":
@@ -49,7 +51,7 @@ class GanttChart:
     def bounds(self) -> Bounds:
         """From the beginning to the end, or the deadline."""
         end = max(self.deadline, float(self.parts[:, 4].max(initial=0.0)))
-        return 0.0, end, -0.4 * self.height, 2.6 * self.height
+        return 0.0, end, 0.0, 2.8 * self.height
 
     def draw(self, axes: "Axes") -> None:
         """Draw a lane for each, the human's above, with the actions' names and the deadline."""

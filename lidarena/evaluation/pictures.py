@@ -11,7 +11,7 @@ from lidarena.base.files import write_figure
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.episodes import Episode
 from lidarena.evaluation.palette import line_of
-from lidarena.evaluation.picture import Bounds, Picture
+from lidarena.evaluation.picture import Bounds, Picture, axis_titles
 from lidarena.evaluation.progress_curve import ProgressCurve, progress_band
 from lidarena.evaluation.runner import place_of
 
@@ -83,8 +83,9 @@ def single(cell: Cell) -> "Figure":
     axes = figure.add_subplot()
     _draw(axes, cell, box)
     axes.set_title(f"{cell.policy.title} in {cell.env.label}, seed {episode.seed}\n{episode.caption}")
-    axes.set_xlabel("x (m)")
-    axes.set_ylabel("y (m)")
+    across, up = axis_titles(cell.picture)
+    axes.set_xlabel(across)
+    axes.set_ylabel(up)
     _legend(figure, [axes])
     return figure
 
@@ -101,11 +102,11 @@ def overview(cells: Sequence[Sequence[Cell]]) -> "Figure":
         for cell, axes in zip(row, line, strict=True):
             _draw(axes, cell, box)
             axes.set_title(cell.episodes[0].caption, fontsize=8.5)
-        line[0].set_ylabel(f"{row[0].env.label}\ny (m)")
+        line[0].set_ylabel(f"{row[0].env.label}\n{axis_titles(row[0].picture)[1]}")
     for cell, top, bottom in zip(cells[0], grid[0], grid[-1], strict=True):
         header = {"xy": (0.5, 1), "xytext": (0, 20), "xycoords": "axes fraction", "textcoords": "offset points"}
         top.annotate(cell.policy.title, ha="center", fontsize=12, fontweight="bold", **header)
-        bottom.set_xlabel("x (m)")
+        bottom.set_xlabel(axis_titles(cell.picture)[0])
     # the layout does not see the annotated names of the policies: an empty second line leaves them room
     figure.suptitle(f"First episode of each policy (seed {cells[0][0].episodes[0].seed})\n", fontsize=12)
     _legend(figure, list(grid.ravel()))

@@ -54,6 +54,9 @@ class RobotSpec:
         collision_distance: Range of a beam, from the centre, below which the robot has collided [m]; with an outline
             what this exceeds ``radius`` by is the width of a rim around the outline. None: where the family says.
         outline: Corners x, y of its footprint, with the centre inside [m]; () for a disc.
+        clearance: How far its centre keeps from every wall where it drives [m]. What can be reached by narrower ways
+            alone counts as out of reach, for completeness and for the classical explorers alike; None: completeness
+            counts what fits ``bumper``, and each driver keeps what it is made for.
     """
 
     radius: float = 0.105
@@ -64,6 +67,7 @@ class RobotSpec:
     reverse: bool = False
     collision_distance: float | None = None
     outline: Outline = ()
+    clearance: float | None = None
 
     @property
     def contact_distance(self) -> float:
@@ -136,4 +140,7 @@ def _checked(spec: RobotSpec) -> RobotSpec:
         least = round(spec.radius + 0.001, 9)  # touching bodies overlap by some tenths of a millimetre
         check_range("robot.collision_distance", spec.collision_distance, least, spec.radius + 1.0)
         numbers["collision_distance"] = float(spec.collision_distance)
+    if spec.clearance is not None:
+        check_range("robot.clearance", spec.clearance, round(spec.bumper, 9), 10.0)
+        numbers["clearance"] = float(spec.clearance)
     return replace(spec, outline=tuple(spec.outline), **numbers)

@@ -7,6 +7,7 @@ import lidarena
 from lidarena.envs.workshop.env import WorkshopEnv
 from lidarena.evaluation.episodes import run_episode
 from lidarena.evaluation.gantt import GanttChart
+from lidarena.evaluation.picture import axis_titles
 
 
 def chart() -> GanttChart:
@@ -28,6 +29,7 @@ def test_lanes_tell_who_has_done_what() -> None:
     words = {text.get_text() for text in axes.texts}
     assert {"human", "robot"} <= words and any(word.startswith("cube") for word in words)
     assert "deadline" in axes.get_legend_handles_labels()[1]
+    assert axis_titles(made) == ("time (s)", "") and axis_titles(None) == ("x (m)", "y (m)")
     assert made.bounds()[1] >= made.deadline and pickle.loads(pickle.dumps(made)).actions == made.actions
 
 

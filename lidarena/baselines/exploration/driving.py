@@ -13,11 +13,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
-import cv2
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines.exploration.robot_interface import Robot
+from lidarena.planning.grid.connected import connected_cells, known_extent
 from lidarena.planning.grid.frontiers import nearest_cell
 from lidarena.planning.grid.grid_search import find_path
 from lidarena.planning.grid.guard import GUARDED, carried, is_safe, nearby, turn_in_place, way_out
@@ -30,6 +30,8 @@ _NEARBY = 1.2  # half the side of the window that is looked at before every comm
 _NEAR_HITS = 0.6  # hits so near are remembered … (m)
 _REMEMBERED = 2.0  # … for so long (s)
 _LETHAL, _INFLATED = 0.22, 0.6  # paths keep off walls by the first, where they can by the second (m)
+_SOFT = 0.2  # beyond the first, walls are kept off so much farther where there is room (m)
+_CLOSER = 0.02  # commands may come so much nearer to walls than a path (m)
 _ESCAPE = 0.6  # how far around a robot in the lethal zone cells are opened (m)
 
 
@@ -60,10 +62,12 @@ class Driver:
         robot: The robot.
         inflation: How far to keep off the walls when planning paths. Like every other distance from walls it is that of
             DA-SLAM's robot, and for another one larger by as much as it collides at a larger distance.
+        clearance: How far paths keep off walls (m); None: as the robot is told to, or ``0.22`` for DA-SLAM's.
         arrival: Distance to the goal that counts as there (m).
     """
 
     robot: Robot
+    clearance: float | None = None
     inflation: Inflation = field(init=False)
     arrival: float = 0.3
     pose: NDArray[np.float64] = field(default_factory=lambda: np.zeros(3))
@@ -72,13 +76,19 @@ class Driver:
     def __post_init__(self) -> None:
         """Start with nothing planned."""
         self._extra = self.robot.extra_room
-        self.inflation = Inflation(lethal_radius=_LETHAL + self._extra, radius=_INFLATED + self._extra)
+        told = self.robot.spec.clearance if self.clearance is None else self.clearance
+        lethal = _LETHAL + self._extra if told is None else told
+        self.inflation = Inflation(lethal_radius=lethal, radius=max(_INFLATED + self._extra, lethal + _SOFT))
         self.reset()
 
     def reset(self) -> None:
         """Forget the goal and everything planned."""
         self._follower = PathFollower.with_extra_room(self.robot.commands, self._extra)
         self._follower.keep = self.robot.least_distance
+        if self.inflation.lethal_radius < _LETHAL + self._extra:  # ways are narrower than drivers are made for
+            self._follower.margin = min(self._follower.margin, self.inflation.lethal_radius)
+            closest = max(self.inflation.lethal_radius - _CLOSER, self.robot.spec.bumper)
+            self._follower.least_margin = min(self._follower.least_margin, closest)
         self.stop()
         self._info: Mapping[str, Any] = {}
         self._observation: Any = None
@@ -150,10 +160,11 @@ class Driver:
     def survey(self) -> Terrain | None:
         """Prepare the newest map for planning; None as long as nothing is known."""
         occupancy, resolution = self._info["map"], float(self._info["resolution"])
-        known = occupancy >= 0
-        rows, cols = _extent(known.any(axis=1)), _extent(known.any(axis=0))
-        if rows is None or cols is None:
+        top, bottom, left, right = known_extent(occupancy)
+        if not bottom:
             return None
+        # one more line on either side for the frontiers
+        rows, cols = slice(max(top - 1, 0), bottom + 1), slice(max(left - 1, 0), right + 1)
         x, y = (float(value) for value in self._info["origin"])
         origin = (x + cols.start * resolution, y + rows.start * resolution)
         crop = self._with_hits(occupancy[rows, cols], origin, resolution)
@@ -249,12 +260,6 @@ def _overlap(centre: int, half: int, size: int) -> slice:
     return slice(first, max(min(centre + half + 1, size), first + 1))
 
 
-def _extent(known: NDArray[np.bool_]) -> slice | None:
-    """The lines that contain anything known, and one more on either side for the frontiers."""
-    lines = np.flatnonzero(known)
-    return slice(max(int(lines[0]) - 1, 0), int(lines[-1]) + 2) if len(lines) else None
-
-
 def _reachable(cost: NDArray[np.float64], cell: tuple[int, int]) -> NDArray[np.bool_]:
     """The cells connected with ``cell``, or with the passable cell nearest to it."""
     passable = np.isfinite(cost)
@@ -262,6 +267,5 @@ def _reachable(cost: NDArray[np.float64], cell: tuple[int, int]) -> NDArray[np.b
     if row < 0:
         return passable
     # without corner cutting, whatever 8 neighbours connect 4 neighbours connect too
-    _, labels = cv2.connectedComponents(passable.astype(np.uint8), connectivity=4, ltype=cv2.CV_32S)
-    connected: NDArray[np.bool_] = labels == labels[row, col]
+    connected: NDArray[np.bool_] = connected_cells(passable, row, col)
     return connected

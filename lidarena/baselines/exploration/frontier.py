@@ -1,12 +1,13 @@
 """Frontier exploration: ROS's explore_lite on the SLAM map, driven with the environment's own actions."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from lidarena.base.errors import ConfigError
+from lidarena.base.keyword_checks import check_range
 from lidarena.baselines.exploration.driving import Driver, Terrain
 from lidarena.baselines.exploration.goal_tracker import Goal, GoalBlacklist
 from lidarena.baselines.exploration.robot_interface import Robot
@@ -17,7 +18,25 @@ from lidarena.planning.grid.frontiers import Frontier, find_frontiers, nearest_c
 _FAR_GOAL = 3.0  # a frontier whose nearest reachable cell is farther away than this is behind something (m)
 _SAME_FRONTIER = 1.0  # a frontier with a cell so near to the goal is the one that was driven to (m)
 _BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a place (m)
+_HOLLOW = 1.5  # a frontier whose middle is farther than this from all its cells runs around known ground (m)
+_VIEW = 2.0  # a frontier longer than so many ranges of the lidar is worth no more than one of this length
+_TURNING = 0.8  # metres that a radian of turning is worth where a frontier runs around the robot
 _GROWTH = 0.001  # growth of the known map that justifies a second pass
+
+
+def _checked_robot(env: Any, options: Mapping[str, float], clearance: float | None) -> Robot:
+    """The environment's robot, once the options are found to make sense.
+
+    Raises:
+        ConfigError: See ``FrontierPolicy``.
+    """
+    for name, value in options.items():
+        if not 0.0 <= value < math.inf:
+            raise ConfigError(f"{name} = {value}, allowed are finite numbers >= 0")
+    robot = Robot(env)
+    if clearance is not None:
+        check_range("clearance", clearance, robot.spec.bumper, 10.0)
+    return robot
 
 
 @register("frontier", family="exploration")
@@ -53,6 +72,7 @@ class FrontierPolicy:
         arrival_patience: float = 2.0,
         persistence: float = 0.5,
         last_pass_timeout: float = 60.0,
+        clearance: float | None = None,
     ) -> None:
         """Make it for an exploration environment.
 
@@ -68,9 +88,12 @@ class FrontierPolicy:
             persistence: How much less another frontier must cost (m) for the robot to turn away from the one it is
                 driving to, as long as that one has not vanished; 0 = explore_lite.
             last_pass_timeout: The second pass ends when this time (s) has not added 0.1% to the map.
+            clearance: How far the robot's way keeps from walls (m): frontiers behind narrower doors are out of reach.
+                None: the ``clearance`` of the environment's robot, by which completeness counts as well, or else 0.22
+                for DA-SLAM's robot and more for larger ones.
 
         Raises:
-            ConfigError: for an option that is negative or not finite.
+            ConfigError: for an option that is negative or not finite, or a clearance at which the robot collides.
         """
         options = {
             "min_frontier_size": min_frontier_size,
@@ -83,18 +106,16 @@ class FrontierPolicy:
             "persistence": persistence,
             "last_pass_timeout": last_pass_timeout,
         }
-        for name, value in options.items():
-            if not 0.0 <= value < math.inf:
-                raise ConfigError(f"{name} = {value}, allowed are finite numbers >= 0")
+        robot = _checked_robot(env, options, clearance)
         self._sizes = sorted({min_frontier_size, min(last_frontier_size, min_frontier_size)}, reverse=True)
         self._scales = (potential_scale, gain_scale)
         self._persistence = persistence
-        robot = Robot(env)
+        self._view = _VIEW * robot.sight
         self._every = max(1, round(planner_period / robot.period))
         self._timeout = math.ceil(progress_timeout / robot.period)
         self._patience = math.ceil(arrival_patience / robot.period)
         self._last_pass = math.ceil(last_pass_timeout / robot.period)
-        self.driver = Driver(robot)
+        self.driver = Driver(robot, clearance)
         self.reset()
 
     def reset(self, seed: int | None = None) -> None:
@@ -116,13 +137,16 @@ class FrontierPolicy:
 
         Args:
             observation: The environment's; only its beams are used.
-            info: The environment's; ``map``, ``resolution``, ``origin`` and ``pose`` are used.
+            info: The environment's; ``map``, ``resolution``, ``origin`` and ``pose`` are used. Once it has finished,
+                ``ending`` tells why.
         """
         self._step += 1
         self.driver.sense(observation, info)
         if not self.finished and self._is_due():
             self._planned_at = self._step
             self._plan()
+        if self.finished:
+            info["ending"] = self.ending
         return self.driver.action()
 
     def _is_due(self) -> bool:
@@ -180,6 +204,8 @@ class FrontierPolicy:
 
         def cost(frontier: Frontier) -> float:
             own = frontier.min_distance * resolution if self._is_last(size) else frontier.cost
+            if not self._is_last(size):  # what is longer than the lidar sees at once is worth no detour
+                own += self._scales[1] * max(frontier.size * resolution - self._view, 0.0)
             return own - (self._persistence if frontier is kept else 0.0)
 
         return sorted(found, key=cost)
@@ -204,9 +230,17 @@ class FrontierPolicy:
         nearest = int(np.argmin(apart))
         return found[nearest] if apart[nearest] * terrain.around.resolution <= _SAME_FRONTIER else None
 
-    @staticmethod
-    def _goals(frontier: Frontier, terrain: Terrain) -> Iterator[Goal]:
-        """Where to go for a frontier: to its middle, or if that is of no use to its cell nearest to the robot."""
+    def _goals(self, frontier: Frontier, terrain: Terrain) -> Iterator[Goal]:
+        """Where to go for a frontier: to its middle, or if that is of no use to its cell nearest to the robot.
+
+        The middle of one that runs around known ground, as in a hall wider than the lidar sees, is of no use: it lies
+        in known ground, and the robot would drive back there again and again.
+        """
+        if self._runs_around(frontier, terrain.around.resolution):
+            row, col = self._ahead(frontier, terrain)
+            x, y = terrain.around.points(np.array([nearest_cell(terrain.reachable, row, col)]))[0]
+            yield float(x), float(y)
+            return
         row, col = frontier.cells[np.argmin(((frontier.cells - np.array(terrain.cell)) ** 2).sum(axis=1))].tolist()
         for cell, wanted in (
             (frontier.goal, frontier.centroid),
@@ -215,3 +249,19 @@ class FrontierPolicy:
             if math.dist(cell, wanted) * terrain.around.resolution <= _FAR_GOAL:
                 x, y = terrain.around.points(np.array([cell]))[0]
                 yield float(x), float(y)
+
+    def _ahead(self, frontier: Frontier, terrain: Terrain) -> tuple[float, float]:
+        """The cell of a frontier that is nearest to the robot, of equally near ones the one that lies ahead of it."""
+        offsets = frontier.cells - np.array(terrain.cell)
+        away = np.hypot(offsets[:, 0], offsets[:, 1]) * terrain.around.resolution
+        turn = np.arctan2(offsets[:, 0], offsets[:, 1]) - self.driver.pose[2]
+        turn = np.abs((turn + math.pi) % (2.0 * math.pi) - math.pi)
+        row, col = frontier.cells[np.argmin(away + _TURNING * turn)].tolist()
+        return float(row), float(col)
+
+    def _runs_around(self, frontier: Frontier, resolution: float) -> bool:
+        """Whether a frontier is longer than the lidar sees at once and its middle is far from all of it."""
+        if frontier.size * resolution <= self._view:
+            return False
+        offsets = frontier.cells - np.array(frontier.centroid)
+        return bool(math.sqrt((offsets**2).sum(axis=1).min()) * resolution > _HOLLOW)

@@ -74,6 +74,11 @@ class Robot:
         """Return the sum of the beams that an observation holds: it tells whether they are those of before."""
         return float(self._beams(observation)[0].sum())
 
+    @property
+    def sight(self) -> float:
+        """Range of its lidar (m)."""
+        return self._lidar.max_range
+
     def action(self, command: int) -> Any:
         """Return the environment's action for a command."""
         return command if self._discrete else box_action(self.spec, *self.commands.velocities[command].tolist())

@@ -1,5 +1,6 @@
 """Map completeness: which cells of a floor plan a robot can come to know."""
 
+import math
 from typing import NamedTuple
 
 import cv2
@@ -37,9 +38,10 @@ def measure_coverage(
     """Find K, against whose size completeness is measured: |known ∩ K| / |K|.
 
     A cell is wanted if the robot's disc, grown by what its collision distance asks for, can cover it, moving from the
-    plan's start with its centre at least that distance from every wall, or if it is a wall cell whose surface borders
-    such cells: 100% is attainable in every world. (Counting the whole grid, as DA-SLAM's code does, would end at a
-    share that depends on the drawing.)
+    plan's start with its centre at least that distance from every wall (through ways that leave it
+    ``robot.clearance``, if that is given; where it is then, it may look into corners from nearer), or if it is a wall
+    cell whose surface borders such cells: 100% is attainable in every world. (Counting the whole grid, as DA-SLAM's
+    code does, would end at a share that depends on the drawing.)
 
     Args:
         plan: The floor plan, with its start.
@@ -53,6 +55,8 @@ def measure_coverage(
     raster = plan.raster(resolution)
     passable = ~raster.solid & (raster.clearance >= robot.bumper)
     reached = _connected(passable, raster, plan.start)
+    if robot.clearance is not None and robot.clearance > robot.bumper and reached.any():
+        reached &= _within(raster, plan, robot.clearance, robot.bumper)
     if not reached.any():
         raise _no_room(plan, robot)
     away = cv2.distanceTransform((~reached).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * resolution
@@ -70,6 +74,24 @@ def check_start(plan: Floorplan, robot: RobotSpec) -> None:
     """
     if plan.clearance(np.array([plan.start[:2]]))[0] < robot.bumper:
         raise _no_room(plan, robot)
+
+
+def _within(raster: Raster, plan: Floorplan, clearance: float, bumper: float) -> NDArray[np.bool_]:
+    """Where a robot can be (rows, columns) that keeps ``clearance`` on its ways and ``bumper`` at their ends.
+
+    Raises:
+        MapError: It cannot at the plan's start.
+    """
+    roomy = _connected(~raster.solid & (raster.clearance >= clearance), raster, plan.start)
+    if not roomy.any():
+        x, y, _ = plan.start
+        raise MapError(
+            f"a robot that keeps a clearance of {clearance:g} m does not fit at the start ({x:g}, {y:g}) of map "
+            f"{plan.name!r}; a smaller robot.clearance or another start is needed"
+        )
+    away = cv2.distanceTransform((~roomy).astype(np.uint8), cv2.DIST_L2, cv2.DIST_MASK_PRECISE) * raster.resolution
+    near: NDArray[np.bool_] = away <= (clearance - bumper) * math.sqrt(2.0) + raster.resolution  # into right angles
+    return near
 
 
 def _no_room(plan: Floorplan, robot: RobotSpec) -> MapError:

@@ -80,12 +80,16 @@ class ExplorationMeasures(FamilyMeasures):
     )
 
     def ending(self, recording: Recording) -> str:
-        """As of every environment, but for what ran out of ``patience`` before it ran out of steps."""
+        """As of every environment, but for what ran out of ``patience`` before it ran out of steps.
+
+        Explorers tell why they have finished: nothing is left, what is left is out of reach, or the map hardly grows.
+        """
         ending = super().ending(recording)
         patience = getattr(getattr(recording.env.unwrapped, "options", None), "patience", None)
         if ending == "out of time" and patience is not None and recording.steps < recording.step_limit:
             return "out of patience"
-        return ending
+        why = getattr(recording.policy, "ending", "") if ending == "policy finished" else ""
+        return f"{ending}: {why}" if why else ending
 
     def measure(self, recording: Recording) -> Mapping[str, float]:
         """See the class; what is not said there is a mean over the steps."""

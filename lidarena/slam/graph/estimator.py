@@ -18,7 +18,7 @@ Floats = NDArray[np.float64]
 
 _SETTLING = 2
 """Rounds of matching all keyframes with their neighbours, whenever that is due."""
-_CONFIDENCE = 0.006
+_CONFIDENCE = 0.0025
 """Factor on the covariances of the fit, which believes few of a scan's points, for logs of worse lasers than the
 simulated ones: with this the error is as large as its covariance says (``benchmarks/filter_accuracy.py --slam graph``).
 """

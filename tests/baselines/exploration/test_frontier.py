@@ -260,3 +260,40 @@ def test_frontier_explores_with_any_observation() -> None:
         known.append(info["completeness"])
     assert min(known) > 0.4
     assert known[1] == known[2] == known[3], "they show the same hits as the sectors"
+
+
+NARROW = drawn(*["#" * 13, *["#     #     #"] * 4, "#           #", *["#     #     #"] * 4, "#" * 13], side=7)
+"""Two rooms with a door of 0.35 m between them."""
+
+
+def test_a_door_narrower_than_its_clearance_is_told_as_out_of_reach():
+    env = FakeExploration(NARROW, (1.0, 1.75, 0.0))
+    policy = make("frontier", env)
+    info, _ = explore(env, policy, 1500)
+    assert policy.finished and not info["collision"]
+    assert policy.ending == "out of reach"
+    policy.act(env._observation(), info)
+    assert info["ending"] == "out of reach"
+
+
+def test_a_clearance_at_which_it_collides_is_refused():
+    env = FakeExploration(NARROW, (1.0, 1.75, 0.0))
+    with pytest.raises(ConfigError, match="clearance"):
+        make("frontier", env, clearance=0.1)
+
+
+def test_the_robots_own_clearance_holds_for_paths_and_the_policys_goes_before():
+    env = gym.make("lidarena/Env1-v0", robot={"clearance": 0.3})
+    assert make("frontier", env).driver.inflation.lethal_radius == 0.3
+    assert make("frontier", env, clearance=0.16).driver.inflation.lethal_radius == 0.16
+    env.close()
+
+
+def test_a_hall_wider_than_the_lidar_sees_is_not_crossed_again_and_again():
+    """After 800 steps 40% were seen as long as the middle of a frontier all around was driven to."""
+    side = 330  # 16.5 m
+    hall = np.ones((side, side), bool)
+    hall[6:-6, 6:-6] = False
+    env = FakeExploration(hall, (1.0, 1.0, 0.7))
+    info, _ = explore(env, make("frontier", env), 800)
+    assert info["completeness"] > 0.85 and info["path_length"] < 60.0

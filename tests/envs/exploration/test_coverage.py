@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from lidarena.base.errors import MapError
 from lidarena.envs.exploration.coverage import measure_coverage
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.load import load_floorplan
@@ -53,3 +54,28 @@ def test_perfect_mapping_can_know_all_of_it(name: str) -> None:
         scan = np.where(ranges < 3.5, ranges + 1e-3, 3.5).astype(np.float32)
         trace_scan(maps, 0, 0.05, pose, scan, lidar.directions, 3.5, 1, outlines, 0)
     assert maps.covered[0] / coverage.wanted.sum() > 0.99
+
+
+def rooms_with_a_door(width: float) -> Floorplan:
+    """Two rooms of 2 m x 2 m, the start in the left one."""
+    edge, half = 2.05, width / 2.0 + 0.05  # walls have square ends
+    outer = [(0, 0, 4.1, 0), (4.1, 0, 4.1, 2), (4.1, 2, 0, 2), (0, 2, 0, 0)]
+    inner = [(edge, 0, edge, 1.0 - half), (edge, 1.0 + half, edge, 2)]
+    return Floorplan.from_shapes("rooms", (0, 0, 4.1, 2), walls=[*outer, *inner], thickness=0.1, start=(1.0, 1.0, 0.0))
+
+
+@pytest.mark.parametrize(("door", "clearance", "both"), [(0.5, None, True), (0.5, 0.22, True), (0.4, 0.22, False)])
+def test_a_room_behind_a_door_too_narrow_for_the_clearance_does_not_count(
+    door: float, clearance: float | None, both: bool
+) -> None:
+    plan = rooms_with_a_door(door)
+    wanted = measure_coverage(plan, 0.05, RobotSpec(clearance=clearance)).wanted
+    assert bool(wanted[:, wanted.shape[1] // 2 + 8 :].sum() > 500) == both
+    roomy = measure_coverage(plan, 0.05, RobotSpec()).wanted
+    left = slice(0, wanted.shape[1] // 2 - 4)
+    assert (wanted[:, left] == roomy[:, left]).mean() > 0.995, "corners of the first room count as before"
+
+
+def test_a_start_without_the_clearance_is_refused() -> None:
+    with pytest.raises(MapError, match=r"keeps a clearance of 1\.5 m does not fit at the start"):
+        measure_coverage(rooms_with_a_door(0.6), 0.05, RobotSpec(clearance=1.5))
