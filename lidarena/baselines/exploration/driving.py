@@ -122,9 +122,9 @@ class Driver:
     def _points_around(self) -> NDArray[np.float64]:
         """What the robot must keep clear of, (n, 2) in its own frame; see ``driving.survey.points_around``."""
         seen = carried(self.robot.hits(self._observation, np.zeros(3), GUARDED), np.zeros(3), self._scanned)
-        if self.robot.sees_what_is_near(self._observation):
-            return np.asarray(nearby(seen, self._reckoned))
         points = nearby(np.concatenate([seen, *list(self._hits)[:-1]]), self._reckoned)
+        if self.robot.sees_what_is_near(self._observation):
+            return np.asarray(points)
         closed = self._around.points(np.argwhere(self._occupied))
         return np.concatenate([points, nearby(closed, self.pose)])
 

@@ -56,9 +56,9 @@ def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: 
 
 @kernel
 def points_around(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> NDArray[np.float64]:
-    """What a world's robot must keep clear of, (n, 2) in its own frame [m]: what the newest scan's beams have hit.
+    """What a world's robot must keep clear of, (n, 2) in its own frame [m]: what beams have hit.
 
-    Where they do not see all that is near, also what they hit before, and what is occupied in the window around it.
+    Where they do not see all that is near, also what is occupied in the window around it.
     """
     angles, longest = settings.angles, settings.max_range
     near, count = np.empty((len(angles) + drive.hits.shape[1] * drive.hits.shape[2], 2)), 0
@@ -68,14 +68,13 @@ def points_around(w: int, senses: Perceptions, settings: DriverSettings, drive: 
             near[count, 0], near[count, 1] = away * math.cos(angles[k]), away * math.sin(angles[k])
             count += 1
     near[:count] = carried(near[:count], np.zeros(3), drive.scanned[w])
-    if settings.all_around:
-        return nearby(near[:count], drive.reckoned[w])
     for slot in range(drive.hits.shape[1]):
         if slot != drive.newest[w]:
             end = count + drive.hit_counts[w, slot]
             near[count:end] = drive.hits[w, slot, : drive.hit_counts[w, slot]]
             count = end
-    return np.concatenate((nearby(near[:count], drive.reckoned[w]), _occupied_around(w, senses, drive)))
+    points = nearby(near[:count], drive.reckoned[w])
+    return points if settings.all_around else np.concatenate((points, _occupied_around(w, senses, drive)))
 
 
 @kernel
