@@ -72,7 +72,7 @@ def test_a_shipped_agent_drives(name: str) -> None:
     if "completeness" in info:
         assert info["completeness"] > 0.1
     elif "completion" in info:
-        assert info["completion"] == 1.0
+        assert info["completion"] > 0.3
     else:
         assert info["distance"] < distance
 
