@@ -23,6 +23,7 @@ _NEARER = 2e-3  # what the robot comes nearer to by less than this it does not a
 _CELL = 0.04  # of the grid on which a way out is searched [m]
 _EASINGS = np.array([0.06, 0.03, 0.0, -0.008])  # of the clearance, one after the other, until there is a way out [m]
 _ROOMY, _MOST_STATES = 0.15, 6000.0  # clearance beyond the least that is preferred on a way out [m]
+_TOUCHED = 0.02  # what is nearer than the least distance by more than this is no measure for the way out [m]
 
 
 @kernel
@@ -171,7 +172,8 @@ def way_out(points: NDArray[np.float64], commands: Commands, keep: float) -> NDA
         own = min(own, math.hypot(points[i, 0], points[i, 1]))
     limits = np.array([10.0 * GUARDED, GUARDED - 0.5, _MOST_STATES])
     for easing in _EASINGS:
-        margins = np.array([min(keep + easing, own - _NEARER), keep + _ROOMY, WEIGHT])
+        least = min(keep + easing, max(own - _NEARER, keep - _TOUCHED))
+        margins = np.array([least, keep + _ROOMY, WEIGHT])
         found = search_commands(gap, closed, frame, here, np.zeros(2), commands, margins, limits)
         if len(found) > 0:
             return found
