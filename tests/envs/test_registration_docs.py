@@ -48,7 +48,7 @@ def test_the_table_of_arguments_names_every_keyword_and_its_default(
 ) -> None:
     table = {cells[0].strip("`"): cells for cells in rows(environment, "Arguments")}
     expected = {field.name: repr(field.default).replace("'", '"') for field in fields(options)}
-    expected |= {name: "None" for name in ("robot", "lidar") if name in expected}  # which stands for the family's own
+    expected |= {name: "None" for name in ("robot", "lidar", "moving") if name in expected}  # the own, or nothing
     if environment is CorridorEnv:  # as PettingZoo calls it
         expected = {"max_cycles": expected.pop("max_episode_steps")} | expected
     assert {name: cells[2].strip("`") for name, cells in table.items()} == expected

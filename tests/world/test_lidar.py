@@ -123,5 +123,6 @@ def test_discs_are_seen_as_pymunk_sees_them(x: float, y: float, theta: float, ra
     if math.hypot(x, y) <= radius + 1e-6:
         return
     for k, angle in enumerate(spec.angles + theta):
-        if k != 3:
+        beside = abs(x * math.sin(angle) - y * math.cos(angle))
+        if k != 3 and abs(beside - radius) > 1e-4:  # whether a beam that grazes meets the disc is a matter of rounding
             assert ranges[k] == pytest.approx(pymunk_range(space, 0.0, 0.0, float(angle), 5.0), abs=2e-3)

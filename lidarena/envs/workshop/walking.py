@@ -59,7 +59,7 @@ def make_walk_grid(plan: Floorplan, points: Floats, radius: float) -> WalkGrid:
     for number, point in enumerate(points):
         row, column = cell_of(point[1], y, free.shape[0]), cell_of(point[0], x, free.shape[1])
         ways = way_lengths(free, row, column) if free[row, column] else np.full(free.shape, np.inf)
-        _aim(free, ways, nearest, toward[number])
+        _aim(free, ways, nearest, np.array([row, column]), toward[number])
         lengths[number] = ways * RESOLUTION
     return WalkGrid(free, toward, lengths, np.ascontiguousarray(points), x, y)
 
@@ -70,14 +70,25 @@ def cell_of(coordinate: float, origin: float, count: int) -> int:
 
 
 @kernel
-def _aim(free: NDArray[np.bool_], ways: Floats, nearest: NDArray[np.int64], toward: NDArray[np.float32]) -> None:
-    """Fill ``toward`` (rows, columns, 2) with directions along falling ``ways`` (rows, columns), as far as is seen."""
+def _aim(
+    free: NDArray[np.bool_],
+    ways: Floats,
+    nearest: NDArray[np.int64],
+    goal: NDArray[np.int64],
+    toward: NDArray[np.float32],
+) -> None:
+    """Fill ``toward`` (rows, columns, 2): to the goal (2,) where it is seen, else along falling ``ways``.
+
+    Ways in eight directions are bent where the floor is open, and many are equally long.
+    """
     rows, columns = free.shape
     for r in range(rows):
         for c in range(columns):
             tr, tc = r, c
             if not free[r, c]:
                 tr, tc = nearest[0, r, c], nearest[1, r, c]
+            elif ways[r, c] < np.inf and _sees(free, r, c, goal[0], goal[1]):
+                tr, tc = goal[0], goal[1]
             elif ways[r, c] < np.inf:
                 nr, nc = r, c
                 for k in range(_AHEAD):

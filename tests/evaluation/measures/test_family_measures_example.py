@@ -16,5 +16,6 @@ def test_the_example_is_measured_and_drawn(tmp_path: Path) -> None:
     random, straight = (float(line.split()[1]) for line in done.stdout.splitlines())
     assert random < 5 < 15 < straight
     pictures = tmp_path / "results" / "own_family" / "pictures"
-    assert sorted(path.name for path in pictures.rglob("*.png")) == ["overview.png", "random.png", "straight.png"]
+    drawn = sorted(path.name for path in pictures.rglob("*.png"))
+    assert drawn == ["overview.png", "own_family-Straight.png", "random.png"]
     assert "Buoys rounded ↑" in (pictures.parent / "table.md").read_text(encoding="utf-8")
