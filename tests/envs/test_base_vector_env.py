@@ -11,15 +11,8 @@ from gymnasium.vector import AutoresetMode, SyncVectorEnv
 
 from lidarena.base.errors import ConfigError
 from lidarena.envs.infos import row_of
+from tests.envs.short_seabed import SEABED
 
-SEABED = {
-    "duration": 3.0,
-    "seabeds": 1,
-    "count": 100,
-    "least_matches": 20,
-    "skips": [6, 12, 25],
-    "max_episode_steps": 5,
-}
 CASES: dict[str, tuple[str, dict[str, Any]]] = {
     "exploration": ("lidarena/Env1-v0", {"slam": "truth", "start": "random", "max_episode_steps": 9}),
     "map": ("lidarena/Env1-v0", {"slam": "truth", "observation": "map", "max_episode_steps": 4}),

@@ -17,16 +17,9 @@ from lidarena.envs.exploration.rewards import REWARDS as EXPLORATION
 from lidarena.envs.rewards import ChosenReward, RewardTerms, Step, choose_reward, numbers_of
 from lidarena.envs.seabed.rewards import REWARDS as SEABED_REWARDS
 from tests.envs.own_rewards import Careful, curious, in_parts
+from tests.envs.short_seabed import SEABED
 
 HERE = "tests.envs.own_rewards"
-SEABED = {
-    "duration": 3.0,
-    "seabeds": 1,
-    "count": 100,
-    "least_matches": 20,
-    "skips": [6, 12, 25],
-    "max_episode_steps": 5,
-}
 SHORT = {"max_episode_steps": 25}
 FAMILIES: dict[str, tuple[str, dict[str, Any], RewardTerms]] = {
     "exploration": ("lidarena/Env1-v0", {"slam": "truth", **SHORT}, EXPLORATION),
