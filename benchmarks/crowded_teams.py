@@ -20,6 +20,7 @@ from lidarena.base.terminal import make_output_printable
 from lidarena.planning import plan_team, validate_plan
 from lidarena.planning.team.grid_graph import grid_graph_of
 from lidarena.planning.team.lifelong import plan_lifelong
+from lidarena.world.grid_mazes import draw_grid_maze
 
 Grid = NDArray[np.bool_]
 
@@ -28,27 +29,6 @@ def draw_ends(blocked: Grid, robots: int, rng: np.random.Generator) -> tuple[NDA
     """Starts and goals (robots, 2) on different cells each."""
     free = np.argwhere(~blocked)
     return free[rng.permutation(len(free))[:robots]], free[rng.permutation(len(free))[:robots]]
-
-
-def maze(rng: np.random.Generator, side: int = 32, wide: int = 2) -> Grid:
-    """A maze without loops, corridors of ``wide`` cells between walls of one, by depth-first search."""
-    count, pitch = (side + 1) // (wide + 1), wide + 1
-    blocked = np.ones((side, side), np.bool_)
-    blocked[:wide, :wide] = False
-    met, stack = {(0, 0)}, [(0, 0)]
-    while stack:
-        r, c = stack[-1]
-        beside = [(r + 1, c), (r - 1, c), (r, c + 1), (r, c - 1)]
-        new = [(y, x) for y, x in beside if 0 <= y < count and 0 <= x < count and (y, x) not in met]
-        if not new:
-            stack.pop()
-            continue
-        y, x = new[int(rng.integers(len(new)))]
-        rows = slice(min(r, y) * pitch, max(r, y) * pitch + wide)
-        blocked[rows, min(c, x) * pitch : max(c, x) * pitch + wide] = False
-        met.add((y, x))
-        stack.append((y, x))
-    return blocked
 
 
 def landscape(rng: np.random.Generator, side: int) -> Grid:
@@ -91,7 +71,7 @@ def mazes(cases: int, seed: int, limit: float) -> None:
     ratios = []
     for case in range(cases):
         rng = np.random.default_rng([seed, case])
-        blocked = maze(rng)
+        blocked = draw_grid_maze(rng)
         plan = plan_team(blocked, *draw_ends(blocked, 200, rng), "prioritized_search", 4, 0.0, limit)
         ratios.append(plan.cost / plan.lower_bound)
     solved = np.isfinite(ratios)
@@ -120,7 +100,7 @@ def large(cases: int, seed: int, limit: float) -> None:
 def lifelong(cases: int, seed: int, limit: float) -> None:
     """64 robots that go on to random cells for 500 steps; goals a step, and what ways without others would allow."""
     rng = np.random.default_rng(seed)
-    blocked = maze(rng)
+    blocked = draw_grid_maze(rng)
     free = np.argwhere(~blocked)
     graph = grid_graph_of(blocked, 4, 0.0)
     ways = np.mean([graph.ahead(int(p)).mean() / 4096 for p in rng.integers(len(graph), size=40)])

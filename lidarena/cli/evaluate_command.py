@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 from rich.console import Console
 
 from lidarena.base.errors import LidarenaError
-from lidarena.base.terminal import make_output_printable
 from lidarena.base.yaml_config import load_config
 from lidarena.cli.config_names import find_config
 from lidarena.cli.shell_completion import complete_names
+from lidarena.cli.standalone import run_alone
 
 if TYPE_CHECKING:
     from lidarena.evaluation import Comparison
@@ -29,10 +29,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a comparison; return 0, 2 for a refusal, 1 for a failure, 130 after Ctrl-C."""
-    make_output_printable()
-    parser = argparse.ArgumentParser(description=_TEXT)
-    _add_options(parser)
-    return run(parser.parse_args(arguments))
+    return run_alone(_TEXT, _add_options, arguments)
 
 
 def run(options: argparse.Namespace) -> int:

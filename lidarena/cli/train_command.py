@@ -6,9 +6,9 @@ import sys
 from typing import TYPE_CHECKING
 
 from lidarena.base.errors import LidarenaError
-from lidarena.base.terminal import make_output_printable
 from lidarena.cli.config_names import find_config
 from lidarena.cli.shell_completion import complete_names
+from lidarena.cli.standalone import run_alone
 
 if TYPE_CHECKING:
     from lidarena.agents.training_config import TrainingConfig
@@ -24,10 +24,7 @@ def add_to(commands: "argparse._SubParsersAction[argparse.ArgumentParser]") -> N
 
 def main(arguments: list[str] | None = None) -> int:
     """Run a training; return 0, 2 for a refusal, 130 after Ctrl-C."""
-    make_output_printable()
-    parser = argparse.ArgumentParser(description=_TEXT)
-    _add_options(parser)
-    return run(parser.parse_args(arguments))
+    return run_alone(_TEXT, _add_options, arguments)
 
 
 def run(options: argparse.Namespace) -> int:

@@ -12,6 +12,7 @@ from lidarena.base.errors import ConfigError
 from lidarena.envs.episodes import Episodes
 from lidarena.envs.infos import Info, of_world, row_of
 from lidarena.envs.seeds import checked_seed
+from lidarena.envs.window import may_draw
 
 
 class SingleWorld(gym.Env[Any, Any]):
@@ -84,13 +85,7 @@ class SingleWorld(gym.Env[Any, Any]):
         Raises:
             ResetNeeded: The environment was not reset.
         """
-        if self.render_mode is None:
-            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
-            return None
-        if not self._begun:
-            raise ResetNeeded("render() needs an episode; call reset() first")
-        picture: NDArray[np.uint8] | None = self.episodes.picture(0)
-        return picture
+        return self.episodes.picture(0) if may_draw(self.render_mode, self._begun) else None
 
     def close(self) -> None:
         """Close the window, if there is one."""

@@ -1,14 +1,30 @@
-"""Pictures in a window on the screen (``render_mode="human"``)."""
+"""Whether there is a picture to draw, and pictures in a window on the screen (``render_mode="human"``)."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import gymnasium as gym
 import numpy as np
+from gymnasium.error import ResetNeeded
 from numpy.typing import NDArray
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+
+
+def may_draw(render_mode: str | None, begun: bool) -> bool:
+    """Whether ``render()`` has something to draw; without a ``render_mode`` a warning tells why not.
+
+    Raises:
+        ResetNeeded: No episode has begun.
+    """
+    if render_mode is None:
+        gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+        return False
+    if not begun:
+        raise ResetNeeded("render() needs an episode; call reset() first")
+    return True
 
 
 class Window:

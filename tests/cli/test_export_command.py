@@ -5,6 +5,7 @@ from pathlib import Path
 import pytest
 
 from lidarena.cli import main
+from tests.cli.refusals import assert_refused
 
 
 def test_a_shipped_agent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -24,15 +25,6 @@ def test_a_shipped_agent(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> 
         (["arena", "--onnx", "file.txt/a.onnx"], "cannot be written"),
     ],
 )
-def test_refusals(
-    arguments: list[str],
-    sentence: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "file.txt").touch()
-    assert main(["export", *arguments]) == 2
-    printed = capsys.readouterr()
-    assert sentence in printed.err and printed.err.count("\n") == 1
+@pytest.mark.usefixtures("folder_with_a_file")
+def test_refusals(arguments: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert_refused(["export", *arguments], sentence, capsys)

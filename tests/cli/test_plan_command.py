@@ -9,6 +9,7 @@ import pytest
 from lidarena.cli import main
 from lidarena.evaluation.team_planning.team_experiment import SHIPPED
 from lidarena.world.load import load_floorplan
+from tests.cli.refusals import assert_refused
 
 WORLD = SHIPPED / "map" / "room-32-32-4.map"
 SCENARIO = SHIPPED / "scen-random" / "room-32-32-4-random-1.scen"
@@ -53,18 +54,9 @@ def test_a_scenario(capsys: pytest.CaptureFixture[str]) -> None:
         (["office", "--cell", "7"], "a resolution of 7.0 m is not possible"),
         (["office", "--radius", "-1"], "--radius is -1 m"),
         ([str(WORLD), "--scen", "nowhere.scen"], "scenario 'nowhere.scen' cannot be read"),
-        (["office", "--out", "nowhere.txt/paths.json"], "cannot be written"),
+        (["office", "--out", "file.txt/paths.json"], "cannot be written"),
     ],
 )
-def test_refusals(
-    arguments: list[str],
-    sentence: str,
-    tmp_path: Path,
-    monkeypatch: pytest.MonkeyPatch,
-    capsys: pytest.CaptureFixture[str],
-) -> None:
-    monkeypatch.chdir(tmp_path)
-    (tmp_path / "nowhere.txt").touch()
-    assert main(["plan", *arguments]) == 2
-    printed = capsys.readouterr()
-    assert sentence in printed.err and printed.err.count("\n") == 1
+@pytest.mark.usefixtures("folder_with_a_file")
+def test_refusals(arguments: list[str], sentence: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert_refused(["plan", *arguments], sentence, capsys)

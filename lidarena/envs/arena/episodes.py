@@ -1,7 +1,5 @@
 """Episodes in a batch of arenas: rewards, endings, observations, infos; the single environment's too."""
 
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext
 from typing import Any
 
 import gymnasium as gym
@@ -14,17 +12,16 @@ from lidarena.envs.arena.options import OBSERVATIONS, ArenaOptions
 from lidarena.envs.arena.rendering import ArenaRecorder, draw_arena
 from lidarena.envs.arena.rewards import REWARDS, weigh_terms
 from lidarena.envs.arena.state import ArenaCore
-from lidarena.envs.compilation import announced_compilation
-from lidarena.envs.episodes import Generators, Seeds
-from lidarena.envs.infos import Info, of_world
-from lidarena.envs.observers import OneByOne, choose_observer
-from lidarena.envs.rewards import StepRewards, choose_reward
+from lidarena.envs.base_episodes import OneAgentEpisodes
+from lidarena.envs.episodes import Outcome
+from lidarena.envs.infos import Info
+from lidarena.envs.rewards import choose_reward
 
 _FAR = 1.5
 """Distances to the goal are observed over this many sides of the room to which everything is to scale."""
 
 
-class ArenaEpisodes:
+class ArenaEpisodes(OneAgentEpisodes):
     """Runs episodes in ``worlds`` arenas, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
     Args:
@@ -36,42 +33,24 @@ class ArenaEpisodes:
         recorder: Paths for the picture, None unless the worlds are drawn.
     """
 
+    options: ArenaOptions
+
     def __init__(self, worlds: int, options: ArenaOptions) -> None:
-        self.core, self.worlds, self.envs = ArenaCore(worlds, options), worlds, worlds
-        self.options = self.core.options
-        self.single_action_space: gym.Space[Any] = heading_space(options.action)
+        self.core = ArenaCore(worlds, options)
+        reward = choose_reward(options.reward, REWARDS)
+        super().__init__(worlds, self.core.options, reward, heading_space(options.action))
         low = np.concatenate([np.zeros(self.core.beam.beams + 1), np.full(2, -1.0)]).astype(np.float32)
-        self.single_observation_space: gym.Space[Any] = gym.spaces.Box(low, np.ones_like(low), dtype=np.float32)
-        observer = choose_observer(options.observation, OBSERVATIONS)
-        self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds,))
-        if not isinstance(observer, str):
-            self.single_observation_space = observer.space
+        self._choose_observation(OBSERVATIONS, lambda _: gym.spaces.Box(low, np.ones_like(low), dtype=np.float32))
         self.recorder = ArenaRecorder(worlds) if options.render_mode is not None else None
-        self._rewards = StepRewards(choose_reward(options.reward, REWARDS), (worlds,), self._snapshot)
-        self._steps = np.zeros(worlds, np.int64)
         self._success = np.zeros(worlds, np.bool_)
-        self._compiled = False
 
-    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
-        """Begin a new episode in each of ``worlds``.
+    def _begin(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
+        self.core.reset_world(world, rng, seed)
+        self._success[world] = False
+        if self.recorder is not None:
+            self.recorder.begin(world, self.core)
 
-        Args:
-            worlds: Which ones.
-            generators: Of all worlds; each draws from its own.
-            seeds: That all worlds were reset with, if they were.
-        """
-        begun = list(worlds)
-        with nullcontext() if self._compiled else announced_compilation():
-            for world in begun:
-                self.core.reset_world(world, generators[world], seeds[world] if seeds is not None else None)
-                self._steps[world] = 0
-                self._success[world] = False
-                self._rewards.begin(world)
-                if self.recorder is not None:
-                    self.recorder.begin(world, self.core)
-        self._rewards.look(begun)
-
-    def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
+    def step(self, actions: Any) -> Outcome:
         """Act in every world; returns rewards, terminated and truncated, each (worlds,).
 
         Raises:
@@ -80,25 +59,18 @@ class ArenaEpisodes:
         core = self.core
         turns = turns_of(self.options.action, actions, core.worlds)
         before = core.measurements.distance.copy()
-        with nullcontext() if self._compiled else announced_compilation():
+        with self._compilation():
             core.step(turns)
-        self._compiled = True
-        self._steps += 1
+        self._note_step()
         collision = core.physics.touched
         self._success = (core.measurements.distance <= core.goal_radius) & ~collision
         weighed = weigh_terms(core, self._rewards.chosen.weights, before, self._success)
         rewards = self._rewards.add_up(weighed, actions)
         if self.recorder is not None:
             self.recorder.driven.record(core.physics.poses)
-        truncated = np.zeros(core.worlds, np.bool_)
-        if self.options.max_episode_steps != -1:
-            truncated |= self._steps >= self.options.max_episode_steps
-        return rewards, collision | self._success, truncated
+        return rewards, collision | self._success, self._out_of_steps()
 
-    def observe(self) -> Any:
-        """Fresh observations (worlds, beams + 3), or what an observer of one's own makes of the worlds."""
-        if self._own is not None:
-            return self._own.observe(self._snapshot())
+    def _look(self) -> NDArray[np.float32]:
         core = self.core
         out = np.empty((core.worlds, core.beam.beams + 3), np.float32)
         proximity = self.options.observation == "proximity"
@@ -106,17 +78,7 @@ class ArenaEpisodes:
         observe(core.physics.poses, core.goals, core.beam.max_range, far, core.radii, proximity, core.measurements, out)
         return out
 
-    def infos(self) -> Info:
-        """What every step tells, as arrays over worlds."""
-        return self._rewards.tell(self._facts())
-
-    def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
-        """What every step tells, as it is now; one world's part by its number."""
-        facts = self._facts()
-        return lambda index: of_world(facts, index[0])
-
     def _facts(self) -> Info:
-        """All but what the step was worth."""
         core = self.core
         info = Info(
             {
@@ -145,16 +107,9 @@ class ArenaEpisodes:
             info["truth"] = known | own | {"optimal_time": core.optimal_time.copy()}
         return info
 
-    def last_infos(self) -> Info:
-        """The same as ``infos``, whose arrays are copies."""
-        return self.infos()
-
     def picture(self, world: int) -> NDArray[np.uint8] | None:
         """The arena of one world, its potential, plan and path; None unless the worlds are drawn."""
         return None if self.recorder is None else draw_arena(self.core, self.recorder, world)
-
-    def close(self) -> None:
-        """Nothing is held."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""

@@ -2,7 +2,7 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, replace
-from typing import Any, TypedDict
+from typing import Any
 
 import numpy as np
 
@@ -11,6 +11,7 @@ from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
 from lidarena.envs.arena.moving import MovingSpec
 from lidarena.envs.arena.rewards import REWARDS
+from lidarena.envs.common_keywords import CommonKeywords
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
 from lidarena.world.arenas import Arena, ArenaGenerator
@@ -61,7 +62,7 @@ LIDAR = ToScale(beams=36, max_range=30.0, noise=0.0)
 """36 exact beams all around, of 30 m in a 100 m room, and to scale in others."""
 
 
-class ArenaKeywords(TypedDict, total=False):
+class ArenaKeywords(CommonKeywords, total=False):
     """The keywords of ``ArenaOptions`` with their types, for editors and type checkers."""
 
     arena: ArenaSpec | Sequence[ArenaSpec]
@@ -74,17 +75,12 @@ class ArenaKeywords(TypedDict, total=False):
     pick: str
     solvable: bool
     action: str
-    observation: ObservationSpec
     robot: RobotSpec | Mapping[str, Any] | str | None
     lidar: LidarSpec | Mapping[str, Any] | str | None
     knowledge: str
     decision_period: float | None
     goal_radius: float | None
-    max_episode_steps: int | None
-    reward: RewardSpec
-    expose_truth: bool
     field: str
-    render_mode: str | None
 
 
 @dataclass(frozen=True)

@@ -2,11 +2,12 @@
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import Any
 
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, suggest
 from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
+from lidarena.envs.common_keywords import CommonKeywords
 from lidarena.envs.corridor.rewards import REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward, reward_of_weights
@@ -50,7 +51,7 @@ _LIMITS = Limits(
 )
 
 
-class CorridorKeywords(TypedDict, total=False):
+class CorridorKeywords(CommonKeywords, total=False):
     """The keywords of ``CorridorOptions`` with their types, for editors and type checkers."""
 
     map: MapSpec
@@ -68,11 +69,6 @@ class CorridorKeywords(TypedDict, total=False):
     decision_period: float
     goal_tolerance: float
     collision_ends: bool
-    max_episode_steps: int | None
-    observation: ObservationSpec
-    reward: RewardSpec
-    expose_truth: bool
-    render_mode: str | None
 
 
 @dataclass(frozen=True)

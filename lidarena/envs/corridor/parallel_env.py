@@ -5,28 +5,23 @@ from lidarena.envs import corridor_v0
 fleet = corridor_v0.parallel_env(map="office", robots=4)
 """
 
-from collections.abc import Mapping
 from dataclasses import fields
 from typing import Any, Unpack
 
-import gymnasium as gym
 import numpy as np
-from gymnasium.error import ResetNeeded
-from gymnasium.utils import seeding
 from numpy.typing import NDArray
-from pettingzoo import AECEnv, ParallelEnv
+from pettingzoo import AECEnv
 from pettingzoo.utils import parallel_to_aec, wrappers
 
-from lidarena.base.errors import ActionError, ConfigError, suggest
-from lidarena.base.generator_state import generator_from_words, generator_words
-from lidarena.base.keyword_checks import check_names, check_step_limit, takes_keywords_of
+from lidarena.base.errors import ActionError
+from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.action_bounds import within_bounds
+from lidarena.envs.base_parallel_env import Observations, Outcomes, ParallelWorld, check_cycles
 from lidarena.envs.corridor.drawing import draw_world
 from lidarena.envs.corridor.episodes import CorridorEpisodes
 from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions, modern_keywords
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.infos import Info, of_world
-from lidarena.envs.seeds import checked_seed
 from lidarena.world.floorplan import Floorplan
 
 __all__ = ["CorridorEnv", "agent_name", "env", "parallel_env", "raw_env"]
@@ -39,7 +34,7 @@ def agent_name(robot: int) -> str:
     return f"robot_{robot}"
 
 
-class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[misc]  # PettingZoo is untyped
+class CorridorEnv(ParallelWorld):
     """Robots share a building; each must reach its goal without touching a wall or another robot.
 
     ## Description
@@ -174,67 +169,20 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         Raises:
             LidarenaError: A keyword, floor plan, start or goal that cannot be had.
         """
-        if "max_episode_steps" in keywords:
-            raise ConfigError("keyword 'max_episode_steps' is called 'max_cycles' here, as everywhere in PettingZoo")
         modern = modern_keywords(keywords)
-        check_names("corridor_v0", modern, ["max_cycles", *_KEYWORDS])
-        if max_cycles is not None:
-            check_step_limit(max_cycles, "max_cycles")
+        check_cycles("corridor_v0", max_cycles, modern, _KEYWORDS)
         options = CorridorOptions.checked({**modern, "max_episode_steps": max_cycles})
-        self.episodes = CorridorEpisodes(1, options)
-        self.max_cycles, self.render_mode = options.max_episode_steps, options.render_mode
-        self.possible_agents = [agent_name(robot) for robot in range(options.robots)]
-        self.agents: list[str] = []
-        self._numbers = {name: robot for robot, name in enumerate(self.possible_agents)}
-        self._observation_spaces = {name: _copy(self.episodes.observation_space) for name in self._numbers}
-        self._action_spaces = {name: _copy(self.episodes.action_space) for name in self._numbers}
-        self._generator: np.random.Generator | None = None
-
-    def observation_space(self, agent: str) -> gym.Space[Any]:
-        """Of an agent; always the same object."""
-        return self._observation_spaces[self._known(agent)]
-
-    def action_space(self, agent: str) -> gym.Space[Any]:
-        """Of an agent; always the same object."""
-        return self._action_spaces[self._known(agent)]
-
-    def _known(self, agent: str) -> str:
-        if agent not in self._numbers:
-            raise ConfigError(f"there is no agent {agent!r}{suggest(str(agent), self.possible_agents)}")
-        return agent
+        teams = CorridorEpisodes(1, options)
+        names = [agent_name(robot) for robot in range(options.robots)]
+        super().__init__(teams, names, teams.observation_space, teams.action_space)
 
     @property
     def floorplan(self) -> Floorplan:
         """The floor plan, for pictures."""
-        return self.episodes.core.plan
+        plan: Floorplan = self.episodes.core.plan
+        return plan
 
-    @property
-    def options(self) -> CorridorOptions:
-        """The keywords."""
-        return self.episodes.options
-
-    def reset(
-        self, seed: int | np.integer[Any] | None = None, options: dict[str, Any] | None = None
-    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, Info]]:
-        """Begin an episode.
-
-        Args:
-            seed: None goes on with the generator that there is.
-            options: There are none; whatever stands here is passed over, as PettingZoo's own tests ask for.
-
-        Raises:
-            ConfigError: A seed that is no whole number of at least 0.
-        """
-        number = checked_seed(seed)
-        if number is not None or self._generator is None:
-            self._generator = seeding.np_random(number)[0]
-        self.episodes.reset([0], [self._generator])
-        self.agents = list(self.possible_agents)
-        return self._observations(self.agents), self._infos(self.agents)
-
-    def step(
-        self, actions: dict[str, Any]
-    ) -> tuple[dict[str, NDArray[np.float32]], dict[str, float], dict[str, bool], dict[str, bool], dict[str, Info]]:
+    def step(self, actions: dict[str, Any]) -> Outcomes:
         """Act for one decision period.
 
         Args:
@@ -245,8 +193,6 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
                 shape or type.
             ResetNeeded: The environment was not reset, or its episode has ended.
         """
-        if not self.agents:
-            raise ResetNeeded("step() needs a running episode; call reset() first, and again when no agents are left")
         self._check_agents(actions)
         everyone = np.zeros((1, len(self.possible_agents), 2)) if self.options.action == "continuous" else None
         table = np.zeros((1, len(self.possible_agents)), np.int64) if everyone is None else everyone
@@ -260,21 +206,9 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         cut_off = {name: bool(truncated[0, self._numbers[name]]) for name in agents}
         return self._observations(agents), gains, ended, cut_off, self._infos(agents)
 
-    def _check_agents(self, actions: dict[str, Any]) -> None:
-        if not isinstance(actions, Mapping):
-            raise ActionError(f"actions of type {type(actions).__name__} were given; a dictionary by agent is needed")
-        for name in actions:
-            if name not in self._numbers:
-                raise ActionError(f"there is no agent {name!r}{suggest(str(name), self.agents)}")
-            if name not in self.agents:
-                arrived = self.episodes.arrived[0, self._numbers[name]]
-                raise ActionError(
-                    f"agent {name!r} is finished, it has {'arrived' if arrived else 'collided'}; "
-                    f"actions are needed for {', '.join(self.agents)}"
-                )
-        for name in self.agents:
-            if name not in actions:
-                raise ActionError(f"the action of agent {name!r} is missing; one is needed for every agent in agents")
+    def _how_finished(self, name: str) -> str:
+        arrived = self.episodes.arrived[0, self._numbers[name]]
+        return f", it has {'arrived' if arrived else 'collided'}; actions are needed for {', '.join(self.agents)}"
 
     def _checked(self, name: str, action: Any) -> NDArray[np.generic]:
         """An agent's action, refused here under its name rather than later among all."""
@@ -294,7 +228,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
             raise ActionError(f"the action {action!r} of agent {name!r} is NaN or outside of its action space {space}")
         return value
 
-    def _observations(self, agents: list[str]) -> dict[str, NDArray[np.float32]]:
+    def _observations(self, agents: list[str]) -> Observations:
         rows = self.episodes.observe(hide_finished=False)[0]
         return {name: rows[self._numbers[name]] for name in agents}
 
@@ -308,14 +242,7 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         """Let a planner's sketch be seen in the picture until the next one."""
         self.episodes.sketches[0] = sketch
 
-    def render(self) -> NDArray[np.uint8] | None:
-        """Picture (height, width, 3); None without ``render_mode``, or where a window shows it (``"human"``).
-
-        Raises:
-            ResetNeeded: The environment was not reset.
-        """
-        if self.render_mode is None:
-            gym.logger.warn("render() needs render_mode='rgb_array' when the environment is made")
+    def _picture(self) -> NDArray[np.uint8] | None:
         return draw_world(self.episodes, 0)
 
     def close(self) -> None:
@@ -327,26 +254,9 @@ class CorridorEnv(ParallelEnv[str, NDArray[np.float32], Any]):  # type: ignore[m
         rows: NDArray[np.float32] = self.episodes.observe()[0]
         return rows
 
-    def get_state(self) -> dict[str, NDArray[Any]]:
-        """Everything that later steps depend on, as arrays; ``set_state`` continues from there to the bit."""
-        assert self._generator is not None
-        arrays = {name: array.copy() for name, array in self.episodes.arrays().items()}
-        return arrays | {"generators": generator_words(self._generator)[None]}
-
-    def set_state(self, state: dict[str, NDArray[Any]]) -> None:
-        """Continue where ``get_state`` of an environment with the same keywords was called."""
-        self._generator = generator_from_words(state["generators"][0])
-        self.episodes.load_arrays(state)
+    def _remaining(self) -> list[str]:
         finished, over = self.episodes.finished[0], bool(self.episodes.over[0])
-        self.agents = [name for name, robot in self._numbers.items() if not (finished[robot] or over)]
-
-
-def _copy(space: gym.Space[Any]) -> gym.Space[Any]:
-    """An equal space with a generator of its own."""
-    if isinstance(space, gym.spaces.Discrete):
-        return gym.spaces.Discrete(int(space.n))
-    assert isinstance(space, gym.spaces.Box)
-    return gym.spaces.Box(space.low, space.high, dtype=space.dtype.type)
+        return [name for name, robot in self._numbers.items() if not (finished[robot] or over)]
 
 
 @takes_keywords_of(CorridorOptions, without=["max_episode_steps"])

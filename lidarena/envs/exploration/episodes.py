@@ -1,15 +1,14 @@
 """Episodes in a batch of exploration worlds: rewards, endings, observations, infos; the single environment's too."""
 
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.envs.compilation import announced_compilation
-from lidarena.envs.episodes import Generators, Seeds
+from lidarena.envs.base_episodes import OneAgentEpisodes
+from lidarena.envs.episodes import Outcome
 from lidarena.envs.exploration.actions import action_space, commands_of
 from lidarena.envs.exploration.observations import ENTROPY, check_entropy, make_observer
 from lidarena.envs.exploration.options import OBSERVATIONS, ExplorationOptions
@@ -17,15 +16,14 @@ from lidarena.envs.exploration.rendering import draw_exploration, path_points
 from lidarena.envs.exploration.rewards import REWARDS, ExplorationTerms
 from lidarena.envs.exploration.state import RESOLUTION, ExplorationCore
 from lidarena.envs.infos import Info, of_world
-from lidarena.envs.observers import OneByOne, choose_observer
 from lidarena.envs.path_recorder import PathRecorder
-from lidarena.envs.rewards import StepRewards, choose_reward
+from lidarena.envs.rewards import choose_reward
 
 _GAIN = 0.001
 """Share of the map that counts as a gain where patience is limited."""
 
 
-class ExplorationEpisodes:
+class ExplorationEpisodes(OneAgentEpisodes):
     """Runs episodes in ``worlds`` worlds, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
     Args:
@@ -37,59 +35,54 @@ class ExplorationEpisodes:
         recorder: Paths for the picture, None unless the worlds are drawn.
     """
 
+    options: ExplorationOptions
+
     def __init__(self, worlds: int, options: ExplorationOptions) -> None:
-        self.options, self.worlds, self.envs = options, worlds, worlds
+        chosen = choose_reward(options.reward, REWARDS)
+        super().__init__(worlds, options, chosen, action_space(options.action))
         self.core = ExplorationCore(worlds, options)
-        self.single_action_space: gym.Space[Any] = action_space(options.action)
         parts = 1 if options.action == "discrete" else 2
-        look = choose_observer(options.observation, OBSERVATIONS)
-        own = None if isinstance(look, str) else look
-        self._own = None if own is None else OneByOne(own, (worlds,))
-        if isinstance(look, str) and look.endswith(ENTROPY):
-            check_entropy(self.core)
-        self.observer = make_observer(look if isinstance(look, str) else "da_slam", parts, options.lidar)
-        self.single_observation_space = self.observer.space if own is None else own.space
+        self.observer = make_observer("da_slam", parts, options.lidar)
+        self._choose_observation(OBSERVATIONS, lambda name: self._observe_by(name, parts))
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
-        self._steps = np.zeros(worlds, np.int64)
         self._previous = np.zeros((worlds, parts))
         self._completeness = np.zeros(worlds)
         self._gained, self._gained_at = np.zeros(worlds), np.zeros(worlds, np.int64)
-        chosen = choose_reward(options.reward, REWARDS)
         self._terms = ExplorationTerms(self.core, chosen, options.eta, options.certain_enough)
-        self._rewards = StepRewards(chosen, (worlds,), self._snapshot)
         self._resolution, self._radius = np.full(worlds, RESOLUTION), np.full(worlds, self.core.robot.radius)
         self._resolution.flags.writeable = self._radius.flags.writeable = False  # every info holds the same ones
         self._map = self.core.maps.occupancy[:]
         self._map.flags.writeable = False
-        self._compiled = False
 
-    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
-        """Begin a new episode in each of ``worlds``, drawing from ``generators[world]``."""
-        begun = list(worlds)
-        with nullcontext() if self._compiled else announced_compilation():
-            for world in begun:
-                self.core.reset_world(world, generators[world])
-                self._steps[world] = self._gained_at[world] = 0
-                self._gained[world] = 0.0
-                self._previous[world] = 0.0
-                if self.recorder is not None:
-                    self.recorder.begin(world, path_points(self.core)[world])
-                self._terms.begin(world)
-                self._rewards.begin(world)
+    def _observe_by(self, name: str, parts: int) -> gym.Space[Any]:
+        """Observe by one of the family's own kinds; returns its space."""
+        if name.endswith(ENTROPY):
+            check_entropy(self.core)
+        self.observer = make_observer(name, parts, self.options.lidar)
+        return self.observer.space
+
+    def _begin(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
+        self.core.reset_world(world, rng)
+        self._gained_at[world] = 0
+        self._gained[world] = 0.0
+        self._previous[world] = 0.0
+        if self.recorder is not None:
+            self.recorder.begin(world, path_points(self.core)[world])
+        self._terms.begin(world)
+
+    def _complete_reset(self, worlds: list[int]) -> None:
         self._completeness = self.core.completeness
-        self._rewards.look(begun)
 
-    def step(self, actions: Any) -> tuple[NDArray[np.float64], NDArray[np.bool_], NDArray[np.bool_]]:
+    def step(self, actions: Any) -> Outcome:
         """Act in every world; returns rewards, terminated and truncated, each (worlds,).
 
         Raises:
             ActionError: See ``drive_actions.commands_of``.
         """
         commands = commands_of(self.options.action, actions, self.core.worlds, self.core.robot)
-        with nullcontext() if self._compiled else announced_compilation():
+        with self._compilation():
             self.core.step(commands)
-        self._compiled = True
-        self._steps += 1
+        self._note_step()
         self._remember(np.asarray(actions, dtype=np.float64))
         before, self._completeness = self._completeness, self.core.completeness
         rewards = self._rewards.add_up(self._terms.weigh(self._completeness - before), actions)
@@ -107,9 +100,7 @@ class ExplorationEpisodes:
 
     def _truncated(self) -> NDArray[np.bool_]:
         """Which worlds have run out of steps, or of patience."""
-        truncated = np.zeros(self.core.worlds, np.bool_)
-        if self.options.max_episode_steps != -1:
-            truncated |= self._steps >= self.options.max_episode_steps
+        truncated = self._out_of_steps()
         if self.options.patience is not None:
             gain = self._completeness >= self._gained + _GAIN
             self._gained[gain], self._gained_at[gain] = self._completeness[gain], self._steps[gain]
@@ -122,15 +113,8 @@ class ExplorationEpisodes:
         else:
             self._previous[:] = 0.5 * (actions.clip(-1.0, 1.0) + 1.0)
 
-    def observe(self) -> Any:
-        """Fresh observations of all worlds."""
-        if self._own is not None:
-            return self._own.observe(self._snapshot())
+    def _look(self) -> Any:
         return self.observer.observe(self.core, self._previous)
-
-    def infos(self) -> Info:
-        """What every step tells, as arrays over worlds; ``map`` is a read-only view that later steps change."""
-        return self._rewards.tell(self._facts())
 
     def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
         """What every step tells, as it is now; one world's part by its number."""
@@ -139,7 +123,7 @@ class ExplorationEpisodes:
         return lambda index: of_world(facts, index[0])
 
     def _facts(self) -> Info:
-        """All but what the step was worth."""
+        """What every step tells; ``map`` is a read-only view that later steps change."""
         core = self.core
         info = Info(
             {
@@ -174,9 +158,6 @@ class ExplorationEpisodes:
     def picture(self, world: int) -> NDArray[np.uint8] | None:
         """The truth beside the belief of one world; None unless the worlds are drawn."""
         return None if self.recorder is None else draw_exploration(self.core, self.recorder, world)
-
-    def close(self) -> None:
-        """Nothing is held."""
 
     @property
     def restorable(self) -> bool:

@@ -3,7 +3,7 @@
 import warnings
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import Any
 from warnings import warn
 
 import numpy as np
@@ -11,6 +11,7 @@ import numpy as np
 from lidarena.base.earlier_keywords import nest_earlier
 from lidarena.base.errors import ConfigError, MapError
 from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
+from lidarena.envs.common_keywords import CommonKeywords
 from lidarena.envs.exploration.rewards import CERTAIN_ENOUGH, ETA, REWARDS
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward
@@ -55,12 +56,10 @@ _LIMITS = Limits(
 )
 
 
-class ExplorationKeywords(TypedDict, total=False):
+class ExplorationKeywords(CommonKeywords, total=False):
     """The keywords of ``ExplorationOptions`` with their types, for editors and type checkers."""
 
     map: MapSpec | Sequence[MapSpec]
-    reward: RewardSpec
-    observation: ObservationSpec
     action: str
     slam: SlamSpec
     particles: int
@@ -68,12 +67,9 @@ class ExplorationKeywords(TypedDict, total=False):
     lidar: LidarSpec | Mapping[str, Any] | str | None
     odometry_noise: float
     decision_period: float
-    max_episode_steps: int | None
     start: Pose | str | None
     stop_at: float | None
     patience: float | None
-    expose_truth: bool
-    render_mode: str | None
     eta: float
     certain_enough: float
 

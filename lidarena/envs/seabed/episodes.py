@@ -1,18 +1,16 @@
 """Episodes over the seabed, in a batch of worlds; the single environment's too."""
 
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext
+from collections.abc import Callable
 from typing import Any
 
 import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.envs.compilation import announced_compilation
-from lidarena.envs.episodes import Generators, Outcome, Seeds
-from lidarena.envs.infos import Info, of_world
-from lidarena.envs.observers import OneByOne, choose_observer
-from lidarena.envs.rewards import StepRewards, choose_reward
+from lidarena.envs.base_episodes import OneAgentEpisodes
+from lidarena.envs.episodes import Outcome
+from lidarena.envs.infos import Info
+from lidarena.envs.rewards import choose_reward
 from lidarena.envs.seabed.actions import decision_space, decisions_of
 from lidarena.envs.seabed.observations import LARGEST, NAMES, observe
 from lidarena.envs.seabed.options import OBSERVATIONS, SeabedOptions
@@ -22,41 +20,22 @@ from lidarena.envs.seabed.scenes import RATE
 from lidarena.envs.seabed.state import RADIUS, Vehicle
 
 
-class SeabedEpisodes:
+class SeabedEpisodes(OneAgentEpisodes):
     """Runs flights in ``worlds`` worlds, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
     Attributes:
         vehicles: One a world.
     """
 
+    options: SeabedOptions
+
     def __init__(self, worlds: int, options: SeabedOptions) -> None:
-        self.options, self.worlds, self.envs = options, worlds, worlds
+        super().__init__(worlds, options, choose_reward(options.reward, REWARDS), decision_space(options.skips))
         self.vehicles = [Vehicle(options) for _ in range(worlds)]
-        self.single_action_space: gym.Space[Any] = decision_space(options.skips)
-        self.single_observation_space: gym.Space[Any] = gym.spaces.Box(0.0, LARGEST, (len(NAMES),), np.float32)
-        observer = choose_observer(options.observation, OBSERVATIONS)
-        self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds,))
-        if not isinstance(observer, str):
-            self.single_observation_space = observer.space
-        self._rewards = StepRewards(choose_reward(options.reward, REWARDS), (worlds,), self._snapshot)
-        self._steps = np.zeros(worlds, np.int64)
-        self._compiled = False
+        self._choose_observation(OBSERVATIONS, lambda _: gym.spaces.Box(0.0, LARGEST, (len(NAMES),), np.float32))
 
-    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
-        """Begin a new flight in each of ``worlds``.
-
-        Args:
-            worlds: Which ones.
-            generators: Of all worlds; each draws from its own.
-            seeds: That all worlds were reset with, if they were.
-        """
-        begun = list(worlds)
-        with nullcontext() if self._compiled else announced_compilation():
-            for world in begun:
-                self.vehicles[world].begin(generators[world], seeds[world] if seeds is not None else None)
-                self._steps[world] = 0
-                self._rewards.begin(world)
-        self._rewards.look(begun)
+    def _begin(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
+        self.vehicles[world].begin(rng, seed)
 
     def step(self, actions: Any) -> Outcome:
         """Compute the next position in every world; returns rewards, terminated and truncated, each (worlds,).
@@ -66,11 +45,10 @@ class SeabedEpisodes:
         """
         decisions = decisions_of(actions, self.worlds, self.options.skips)
         before = [vehicle.frame for vehicle in self.vehicles]
-        with nullcontext() if self._compiled else announced_compilation():
+        with self._compilation():
             for vehicle, (skip, mode) in zip(self.vehicles, decisions, strict=True):
                 vehicle.step(skip, mode)
-        self._compiled = True
-        self._steps += 1
+        self._note_step()
         covered = [(v.frame - frame) / v.last_frame for v, frame in zip(self.vehicles, before, strict=True)]
         weighed = weigh_terms(
             self._rewards.chosen.weights,
@@ -80,11 +58,7 @@ class SeabedEpisodes:
             np.array(covered),
         )
         rewards = self._rewards.add_up(weighed, actions)
-        over = self._success() | self._collision()
-        truncated = np.zeros(self.worlds, np.bool_)
-        if self.options.max_episode_steps != -1:
-            truncated = self._steps >= self.options.max_episode_steps
-        return rewards, over, truncated
+        return rewards, self._success() | self._collision(), self._out_of_steps()
 
     def _each(self, of: Callable[[Vehicle], Any]) -> NDArray[Any]:
         return np.array([of(vehicle) for vehicle in self.vehicles])
@@ -95,22 +69,10 @@ class SeabedEpisodes:
     def _collision(self) -> NDArray[np.bool_]:
         return self._each(lambda vehicle: vehicle.scene.clearance(vehicle.frame) < 0.5 * RADIUS)
 
-    def observe(self) -> Any:
-        """Fresh observations (worlds, 13), or what an observer of one's own makes of the worlds."""
-        if self._own is not None:
-            return self._own.observe(self._snapshot())
+    def _look(self) -> NDArray[np.float32]:
         return np.stack([observe(vehicle) for vehicle in self.vehicles])
 
-    def infos(self) -> Info:
-        """What every step tells, as arrays over worlds."""
-        return self._rewards.tell(self._facts())
-
-    def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
-        facts = self._facts()
-        return lambda index: of_world(facts, index[0])
-
     def _facts(self) -> Info:
-        """All but what the step was worth."""
         each = self._each
         info = Info(
             {
@@ -144,16 +106,9 @@ class SeabedEpisodes:
             }
         return info
 
-    def last_infos(self) -> Info:
-        """The same as ``infos``, whose arrays are copies."""
-        return self.infos()
-
     def picture(self, world: int) -> NDArray[np.uint8] | None:
         """The flight of one world and what its camera sees; None unless the worlds are drawn."""
         return None if self.options.render_mode is None else draw_vehicle(self.vehicles[world])
-
-    def close(self) -> None:
-        """Nothing is held."""
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""

@@ -3,10 +3,11 @@
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, TypedDict
+from typing import Any
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import Limits, check_range, options_of
+from lidarena.envs.common_keywords import CommonKeywords
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward
 from lidarena.envs.seabed.rewards import REWARDS
@@ -47,7 +48,7 @@ _LIMITS = Limits(
 )
 
 
-class SeabedKeywords(TypedDict, total=False):
+class SeabedKeywords(CommonKeywords, total=False):
     """The keywords of ``SeabedOptions`` with their types, for editors and type checkers."""
 
     scene: str
@@ -68,11 +69,6 @@ class SeabedKeywords(TypedDict, total=False):
     compass_noise: float
     velocity_log: bool
     skips: Sequence[int]
-    observation: ObservationSpec
-    reward: RewardSpec
-    max_episode_steps: int | None
-    expose_truth: bool
-    render_mode: str | None
 
 
 @dataclass(frozen=True)

@@ -1,7 +1,5 @@
 """Episodes in a batch of workshops: decisions, rewards, endings, observations, infos; for every interface to them."""
 
-from collections.abc import Callable, Iterable
-from contextlib import nullcontext
 from typing import Any
 
 import gymnasium as gym
@@ -9,11 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import ConfigError
-from lidarena.envs.compilation import announced_compilation
-from lidarena.envs.episodes import Generators, Outcome, Seeds
-from lidarena.envs.infos import Info, of_world
-from lidarena.envs.observers import OneByOne, choose_observer
-from lidarena.envs.rewards import StepRewards, choose_reward
+from lidarena.envs.base_episodes import OneAgentEpisodes
+from lidarena.envs.episodes import Outcome
+from lidarena.envs.infos import Info
+from lidarena.envs.rewards import choose_reward
 from lidarena.envs.workshop.actions import action_space, allowed, decisions_of, with_waiting
 from lidarena.envs.workshop.facts import describe, measure
 from lidarena.envs.workshop.humans import Human
@@ -27,7 +24,7 @@ from lidarena.envs.workshop.state import WorkshopCore
 from lidarena.envs.workshop.task import HUMAN, ROBOT
 
 
-class WorkshopEpisodes:
+class WorkshopEpisodes(OneAgentEpisodes):
     """Runs episodes in ``worlds`` workshops, of checked ``options``; see ``lidarena.envs.episodes.Episodes``.
 
     Attributes:
@@ -36,38 +33,32 @@ class WorkshopEpisodes:
         recognizer: What guesses the human's action, if it is not told.
     """
 
+    options: WorkshopOptions
+
     def __init__(self, worlds: int, options: WorkshopOptions) -> None:
-        self.options, self.worlds, self.envs = options, worlds, worlds
         self.core = WorkshopCore(worlds, options)
         task = self.core.task
+        reward = choose_reward(options.reward, REWARDS)
+        super().__init__(worlds, options, reward, action_space(len(task.actions)))
         self.names = (*task.actions, "wait")
-        self.single_action_space: gym.Space[Any] = action_space(len(task.actions))
         self._numbers = len(task.actions) * PER_ACTION + OF_ALL
-        self.single_observation_space: gym.Space[Any] = gym.spaces.Box(-LARGEST, LARGEST, (self._numbers,), np.float32)
-        observer = choose_observer(options.observation, OBSERVATIONS)
-        self._own = None if isinstance(observer, str) else OneByOne(observer, (worlds,))
-        if not isinstance(observer, str):
-            self.single_observation_space = observer.space
+        shape = (self._numbers,)
+        self._choose_observation(OBSERVATIONS, lambda _: gym.spaces.Box(-LARGEST, LARGEST, shape, np.float32))
         self.recognizer = Recognizer(self.core) if options.recognition == "position" else None
-        self._rewards = StepRewards(choose_reward(options.reward, REWARDS), (worlds,), self._snapshot)
-        self._steps, self._refused = np.zeros(worlds, np.int64), np.zeros(worlds, np.int64)
-        self._before = np.zeros(worlds, np.int64)
-        self._compiled = False
+        self._refused, self._before = np.zeros(worlds, np.int64), np.zeros(worlds, np.int64)
 
-    def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
-        """Begin a new episode in each of ``worlds``, up to the first decision."""
-        begun, fresh = list(worlds), np.zeros(self.worlds, np.bool_)
-        with nullcontext() if self._compiled else announced_compilation():
-            for world in begun:
-                self.core.reset_world(world, generators[world])
-                self._steps[world] = self._refused[world] = 0
-                self._rewards.begin(world)
-                if self.recognizer is not None:
-                    self.recognizer.begin(world)
-            fresh[begun] = True
-            self._run(fresh)
-        self._before[begun] = self.core.workers.ticks[begun]
-        self._rewards.look(begun)
+    def _begin(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
+        self.core.reset_world(world, rng)
+        self._refused[world] = 0
+        if self.recognizer is not None:
+            self.recognizer.begin(world)
+
+    def _complete_reset(self, worlds: list[int]) -> None:
+        """Run up to the first decision."""
+        fresh = np.zeros(self.worlds, np.bool_)
+        fresh[worlds] = True
+        self._run(fresh)
+        self._before[worlds] = self.core.workers.ticks[worlds]
 
     def step(self, actions: Any) -> Outcome:
         """Let the robot decide in every world, and run until its next decision is due.
@@ -84,19 +75,17 @@ class WorkshopEpisodes:
         s, task = self.core.workers, self.core.task
         idle, everywhere = s.idle.copy(), np.ones(self.worlds, np.bool_)
         self._before[:] = s.ticks
-        with nullcontext() if self._compiled else announced_compilation():
+        with self._compilation():
             if human is not None:
                 self.core.decide(HUMAN, human, everywhere, forced=True)
             self._refused += self.core.decide(ROBOT, robot, everywhere)
             s.verdict[s.verdict == DECIDES] = RUNS
             self._run(s.verdict != ENDS)
-        self._compiled = True
-        self._steps += 1
+        self._note_step()
         undone = (s.status != DONE).mean(axis=1)
         over = s.verdict == ENDS
         terminated = over & (undone == 0.0)
-        most = self.options.max_episode_steps
-        truncated = ~terminated & (over | (self._steps >= most) if most != -1 else over)
+        truncated = ~terminated & (over | self._out_of_steps())
         spent = (self.core.time - self._before * 0.1) / task.deadline
         weighed = weigh_terms(
             self._rewards.chosen.weights, spent, (s.idle - idle) / task.deadline, over, undone,
@@ -104,6 +93,12 @@ class WorkshopEpisodes:
         )  # fmt: skip
         rewards = self._rewards.add_up(weighed, np.asarray(actions))
         return rewards, terminated, truncated
+
+    @property
+    def over(self) -> NDArray[np.bool_]:
+        """(worlds,) whether the episodes have ended."""
+        ended: NDArray[np.bool_] = self.core.workers.verdict == ENDS
+        return ended | self._out_of_steps()
 
     def _run(self, active: NDArray[np.bool_]) -> None:
         """Run until the robot, or where both decide anybody, has to; a human of one's own is asked here."""
@@ -135,9 +130,8 @@ class WorkshopEpisodes:
             choices[world] = count if choice is None else choice
         self.core.decide(HUMAN, choices, asked, forced=True)
 
-    def observe(self) -> Any:
-        """Fresh observations (worlds, …)."""
-        return self._own.observe(self._snapshot()) if self._own is not None else self.seen_by(ROBOT)
+    def _look(self) -> NDArray[np.float32]:
+        return self.seen_by(ROBOT)
 
     def seen_by(self, agent: int) -> NDArray[np.float32]:
         """What an agent observes, (worlds, numbers)."""
@@ -156,14 +150,6 @@ class WorkshopEpisodes:
         """What the robot may decide, (worlds, n + 1)."""
         return self.masks(ROBOT)
 
-    def infos(self) -> Info:
-        """What every step tells, as arrays over worlds."""
-        return self._rewards.tell(self._facts())
-
-    def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
-        facts = self._facts()
-        return lambda index: of_world(facts, index[0])
-
     def _facts(self) -> Info:
         facts = describe(self.core, self.recognizer)
         facts |= measure(self.core)
@@ -178,16 +164,9 @@ class WorkshopEpisodes:
             }  # fmt: skip
         return facts
 
-    def last_infos(self) -> Info:
-        """The infos, whose arrays are copies."""
-        return self.infos()
-
     def picture(self, world: int) -> NDArray[np.uint8] | None:
         """The floor and the schedule of one world; None unless the worlds are drawn."""
         return None if self.options.render_mode is None else draw_workshop(self.core, world)
-
-    def close(self) -> None:
-        """Nothing is held."""
 
     @property
     def restorable(self) -> bool:

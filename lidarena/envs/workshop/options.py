@@ -2,10 +2,11 @@
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any, TypedDict
+from typing import Any
 
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import Limits, check_range, options_of, plain
+from lidarena.envs.common_keywords import CommonKeywords
 from lidarena.envs.observers import ObservationSpec, choose_observer
 from lidarena.envs.rewards import RewardSpec, choose_reward
 from lidarena.envs.workshop.humans import EXTERNAL, HumanSpec, choose_human
@@ -25,7 +26,7 @@ PATIENCE = 6.0
 """Deadlines after which an episode is cut off."""
 
 
-class WorkshopKeywords(TypedDict, total=False):
+class WorkshopKeywords(CommonKeywords, total=False):
     """The keywords of ``WorkshopOptions`` with their types, for editors and type checkers."""
 
     task: TaskSpec
@@ -35,11 +36,6 @@ class WorkshopKeywords(TypedDict, total=False):
     wait_period: float
     time_limit: float | None
     recognition: str
-    observation: ObservationSpec
-    reward: RewardSpec
-    max_episode_steps: int | None
-    expose_truth: bool
-    render_mode: str | None
 
 
 @dataclass(frozen=True)

@@ -34,9 +34,8 @@ def test_both_decide_and_who_is_busy_can_only_go_on() -> None:
     busy = "human" if infos["human"]["doing"][0] >= 0 else "robot"
     assert infos[busy]["action_mask"].tolist() == [0, 0, 0, 1]
     while env.agents:
-        env.step({name: int(np.argmax(infos[name]["action_mask"])) for name in env.agents})
-        infos = env._infos()
-    assert infos["human"]["success"] and infos["human"]["reward_terms"]["time"] < 0
+        *_, infos = env.step({name: int(np.argmax(infos[name]["action_mask"])) for name in env.agents})
+    assert infos["human"]["success"] and infos["human"]["reward_time"] < 0
 
 
 def test_where_both_want_the_same_the_human_does_it() -> None:

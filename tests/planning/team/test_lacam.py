@@ -7,8 +7,8 @@ import pytest
 from lidarena.base.errors import TeamError
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.lacam import EXHAUSTED, FOUND, GOES_ON, Lacam
+from lidarena.world.grid_mazes import draw_grid_maze
 from tests.planning.team.problems import MOVES, Problem, faults, meet, plan, traffic_of
-from tests.planning.team.team_mazes import maze
 
 INFINITE = float("inf")
 NARROW = "@@@@@@@ @{}@ @@@.@@@ @@@@@@@"
@@ -126,7 +126,7 @@ def test_the_plan_gets_better_with_time_up_to_the_optimum() -> None:
 
 def test_a_maze_with_two_hundred_robots_is_solved() -> None:
     rng = np.random.default_rng(7)
-    blocked = maze(rng)
+    blocked = draw_grid_maze(rng)
     free = np.argwhere(~blocked)
     starts, goals = (free[rng.permutation(len(free))[:200]] for _ in range(2))
     traffic = traffic_of(Problem(blocked, starts, goals, 4))

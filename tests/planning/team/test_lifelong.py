@@ -8,8 +8,8 @@ from hypothesis import strategies as st
 
 from lidarena.base.errors import TeamError
 from lidarena.planning.team.lifelong import LifelongPlan, plan_lifelong
+from lidarena.world.grid_mazes import draw_grid_maze
 from tests.planning.team.problems import meet, problems
-from tests.planning.team.team_mazes import maze
 
 SLOW = [HealthCheck.too_slow, HealthCheck.filter_too_much, HealthCheck.data_too_large]
 
@@ -67,7 +67,7 @@ def test_a_lone_robot_loses_no_time() -> None:
 
 
 def test_a_crowd_in_a_maze_keeps_moving() -> None:
-    blocked = maze(np.random.default_rng(1))
+    blocked = draw_grid_maze(np.random.default_rng(1))
     found, _ = work(blocked, 64, 150)
     assert found.reached.any(axis=0).sum() >= 40
     assert found.reached[100:].sum() >= 10  # it has not come to a stand
