@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 Result = TypeVar("Result")
 
-_KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy"}
+_KERNEL: dict[str, Any] = {"cache": True, "nogil": True, "error_model": "numpy", "no_cfunc_wrapper": True}
 _LEAF: dict[str, Any] = {**_KERNEL, "_nrt": False}
 
 # The types keep what a function returns, not what it takes: numba casts where mypy would refuse np.int64 for int.
@@ -70,7 +70,7 @@ def _compiled(function: Callable[..., Result], options: dict[str, Any]) -> Calla
     """
 
     def decorate(**more: Any) -> Callable[..., Result]:
-        compiled: Callable[..., Result] = njit(**options | more)(function)
+        compiled: Callable[..., Result] = _with_plain_types(njit(**options | more)(function))
         return compiled
 
     try:
@@ -79,6 +79,18 @@ def _compiled(function: Callable[..., Result], options: dict[str, Any]) -> Calla
         if "no locator available" not in str(error):
             raise
     return decorate() if _use_temporary_cache() else decorate(cache=False)
+
+
+def _with_plain_types(compiled: Any) -> Any:
+    """Compile calls with constants as calls with numbers: numba compiles a function anew for every constant passed."""
+    resolve = compiled.get_call_template
+    plain: Callable[[Any], Any] = types.unliteral
+
+    def call_template(args: tuple[Any, ...], kws: dict[str, Any]) -> Any:
+        return resolve(tuple(plain(a) for a in args), {name: plain(a) for name, a in kws.items()})
+
+    compiled.get_call_template = call_template
+    return compiled
 
 
 @cache

@@ -179,7 +179,8 @@ def _grown(array: Ints, needed: int) -> Ints:
     if needed <= array.size:
         return array
     larger = np.empty(max(needed, 2 * array.size), np.int64)
-    larger[: array.size] = array
+    for k in range(array.size):
+        larger[k] = array[k]
     return larger
 
 
@@ -189,7 +190,8 @@ def _deeper(frames: NDArray[np.int64], depth: int) -> NDArray[np.int64]:
     if depth < frames.shape[0]:
         return frames
     larger = np.empty((2 * frames.shape[0], 5, frames.shape[2]), np.int64)
-    larger[: frames.shape[0]] = frames
+    for number in range(frames.size):  # as far as they go; assigning slices takes seconds to compile
+        larger.flat[number] = frames.flat[number]
     return larger
 
 

@@ -137,7 +137,7 @@ class WorkshopEpisodes(OneAgentEpisodes):
         """What an agent observes, (worlds, numbers)."""
         core = self.core
         out = np.empty((self.worlds, self._numbers), np.float32)
-        observe(core.task.arrays, core.task.grid, core.workers, core.task.deadline, agent, out)
+        observe(core.task.arrays, core.task.grid, core.records, core.task.deadline, agent, out)
         return out
 
     def masks(self, agent: int) -> NDArray[np.bool_]:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import inlined, leaf, take_next
 from lidarena.base.random_streams import normal, uniform
 from lidarena.envs.workshop.humans import TRUNCATION, WITHIN_BOUNDS
+from lidarena.envs.workshop.records import Records
 from lidarena.envs.workshop.task import HUMAN, ROBOT, TaskArrays
 from lidarena.envs.workshop.walking import TICK, WalkGrid, direction, flee, sidestep, way_length
 
@@ -45,161 +46,88 @@ class Rules(NamedTuple):
     """Whether the human is asked, too"""
 
 
-class Workers(NamedTuple):
-    """The state of ``W`` worlds with ``n`` actions; agents are human and robot."""
-
-    ticks: Ints
-    """(W,) since the episode began"""
-    poses: Floats
-    """(W, 2, 3) [m, m, rad]"""
-    phase: Ints
-    """(W, 2)"""
-    action: Ints
-    """(W, 2) under way, ``NOTHING`` or ``LEAVING``"""
-    stop: Ints
-    """(W, 2) at which of its locations"""
-    left: Floats
-    """(W, 2) of the work there [s]; of an absence"""
-    asleep: Bools
-    """(W, 2) whether it waits instead of deciding"""
-    wake: Floats
-    """(W, 2) until when at most [s]"""
-    deaf: Bools
-    """(W, 2) whether nothing else wakes it"""
-    side: Ints
-    """(W, 2) on which it passes the other"""
-    stuck: Floats
-    """(W, 2) for how long it has been blocked [s]"""
-    backing: Floats
-    """(W,) until when the robot backs off [s]"""
-    status: Ints
-    """(W, n)"""
-    agent: Ints
-    """(W, n) who does it or did it, -1 nobody"""
-    begun: Floats
-    """(W, n) when it was chosen [s]; NaN before"""
-    placed: Floats
-    """(W, n) when the work at the last location began [s]; NaN before"""
-    ended: Floats
-    """(W, n) [s]; NaN before"""
-    worked: Floats
-    """(W, n) time of the work alone [s]; NaN before it was chosen"""
-    origin: Floats
-    """(W, 2) where the human was when it chose what it does [m]"""
-    unplanned: Bools
-    """(W, n) whether it was done against the task"""
-    idle: Floats
-    """(W, 2) time spent neither walking nor working nor away [s]"""
-    together: Floats
-    """(W,) time in which both were busy [s]"""
-    path: Floats
-    """(W, 2) walked [m]"""
-    least_gap: Floats
-    """(W,) least distance between the two bodies [m]"""
-    contacts: Ints
-    """(W,) ticks in which they touched"""
-    traits: Floats
-    """(W, 10) of the human, see ``humans.Traits``"""
-    likes: Floats
-    """(W, n)"""
-    refuses: Bools
-    """(W, n)"""
-    streams: NDArray[np.uint64]
-    """(W, 4)"""
-    due: Bools
-    """(W, 2) who has to decide"""
-    verdict: Ints
-    """(W,)"""
-    commands: Floats
-    """(W, 2, 2) speed and turn rate for pymunk [m/s], [rad/s]"""
-    log: Floats
-    """(W, M, 4) agent, phase, action and time of every change [s]"""
-    logged: Ints
-    """(W,) how many there are"""
-
-
 @inlined
-def is_allowed(task: TaskArrays, s: Workers, w: int, agent: int, action: int) -> bool:
+def is_allowed(task: TaskArrays, s: Records, w: int, agent: int, action: int) -> bool:
     """Whether an agent may choose an action: it can do it, and what must come before is done or under way."""
-    if s.status[w, action] != OPEN or not task.capable[agent, action]:
+    if s.actions[w, action].status != OPEN or not task.capable[agent, action]:
         return False
     clear = True
-    for i in range(s.status.shape[1]):
-        clear = clear and not (task.before[i, action] and s.status[w, i] == OPEN)
+    for i in range(s.actions.shape[1]):
+        clear = clear and not (task.before[i, action] and s.actions[w, i].status == OPEN)
     return clear
 
 
 @inlined
-def _note(s: Workers, w: int, agent: int, phase: int) -> None:
+def _note(s: Records, w: int, agent: int, phase: int) -> None:
     """An agent does something else from now on."""
-    s.phase[w, agent] = phase
-    k = s.logged[w]
+    s.agents[w, agent].phase = phase
+    k = s.world[w].logged
     if k < s.log.shape[1]:
         s.log[w, k, 0], s.log[w, k, 1] = agent, phase
-        s.log[w, k, 2], s.log[w, k, 3] = s.action[w, agent], s.ticks[w] * TICK
-        s.logged[w] = k + 1
+        s.log[w, k, 2], s.log[w, k, 3] = s.agents[w, agent].action, s.world[w].ticks * TICK
+        s.world[w].logged = k + 1
 
 
 @inlined
-def _wake(s: Workers, w: int) -> None:
+def _wake(s: Records, w: int) -> None:
     """Something has happened: who waits looks up."""
     for agent in range(2):
-        if not s.deaf[w, agent]:
-            s.asleep[w, agent] = False
+        if not s.agents[w, agent].deaf:
+            s.agents[w, agent].asleep = False
 
 
 @leaf
-def rest(s: Workers, w: int, agent: int, duration: float, deaf: bool) -> None:
+def rest(s: Records, w: int, agent: int, duration: float, deaf: bool) -> None:
     """An agent does nothing for a while; unless it is ``deaf``, until something happens."""
-    s.asleep[w, agent], s.deaf[w, agent] = True, deaf
-    s.wake[w, agent] = s.ticks[w] * TICK + duration
+    s.agents[w, agent].asleep, s.agents[w, agent].deaf = True, deaf
+    s.agents[w, agent].wake = s.world[w].ticks * TICK + duration
 
 
 @leaf
-def begin(task: TaskArrays, s: Workers, w: int, agent: int, action: int) -> None:
+def begin(task: TaskArrays, s: Records, w: int, agent: int, action: int) -> None:
     """An agent sets out for an action; how long the work takes is drawn now."""
-    s.unplanned[w, action] = not is_allowed(task, s, w, agent, action)
-    s.status[w, action], s.agent[w, action] = RUNNING, agent
-    s.begun[w, action] = s.ticks[w] * TICK
+    s.actions[w, action].unplanned = not is_allowed(task, s, w, agent, action)
+    s.actions[w, action].status, s.actions[w, action].agent = RUNNING, agent
+    s.actions[w, action].begun = s.world[w].ticks * TICK
     who = agent if task.capable[agent, action] else 1 - agent
     low, high = task.lower[who, action], task.upper[who, action]
     duration = low
     if agent == HUMAN:
-        s.origin[w, 0], s.origin[w, 1] = s.poses[w, HUMAN, 0], s.poses[w, HUMAN, 1]
-        spread = max(math.log(high / low) / (2.0 * WITHIN_BOUNDS), 0.02) * s.traits[w, 1]
+        s.world[w].origin[0], s.world[w].origin[1] = s.poses[w, HUMAN, 0], s.poses[w, HUMAN, 1]
+        spread = max(math.log(high / low) / (2.0 * WITHIN_BOUNDS), 0.02) * s.human[w].spread
         z = min(max(normal(s.streams[w]), -TRUNCATION), TRUNCATION)
-        duration = s.traits[w, 0] * math.sqrt(low * high) * math.exp(spread * z)
-    s.worked[w, action] = duration
-    s.action[w, agent], s.stop[w, agent], s.asleep[w, agent] = action, 0, False
+        duration = s.human[w].pace * math.sqrt(low * high) * math.exp(spread * z)
+    s.actions[w, action].worked = duration
+    s.agents[w, agent].action, s.agents[w, agent].stop, s.agents[w, agent].asleep = action, 0, False
     _note(s, w, agent, WALKING)
     _wake(s, w)
 
 
 @leaf
-def choose_as_human(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int) -> None:
+def choose_as_human(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, w: int) -> None:
     """Let the simulated human choose its next action, rest, or leave."""
-    time = s.ticks[w] * TICK
-    if time >= s.traits[w, 8]:
-        s.traits[w, 8] = np.inf
-        s.action[w, HUMAN] = LEAVING
+    time = s.world[w].ticks * TICK
+    if time >= s.human[w].leaves_at:
+        s.human[w].leaves_at = np.inf
+        s.agents[w, HUMAN].action = LEAVING
         _note(s, w, HUMAN, WALKING)
         _wake(s, w)
         return
-    if s.traits[w, 6] > 0.0 and not s.deaf[w, HUMAN] and uniform(s.streams[w]) < s.traits[w, 6]:
-        rest(s, w, HUMAN, -s.traits[w, 7] * math.log(1.0 - uniform(s.streams[w])), True)
+    if s.human[w].rest_chance > 0.0 and not s.agents[w, HUMAN].deaf and uniform(s.streams[w]) < s.human[w].rest_chance:
+        rest(s, w, HUMAN, -s.human[w].rest_time * math.log(1.0 - uniform(s.streams[w])), True)
         return
-    s.deaf[w, HUMAN] = False
+    s.agents[w, HUMAN].deaf = False
     best, chosen = -np.inf, NOTHING
     longest = 1e-9
     for k in range(task.tail.shape[0]):
         longest = max(longest, task.tail[k])
-    for k in range(s.status.shape[1]):
-        if s.refuses[w, k] or not is_allowed(task, s, w, HUMAN, k):
+    for k in range(s.actions.shape[1]):
+        if s.actions[w, k].refuses or not is_allowed(task, s, w, HUMAN, k):
             continue
         way = way_length(grid, task.field[task.stops[k, 0], HUMAN], s.poses[w, HUMAN, 0], s.poses[w, HUMAN, 1])
-        value = s.traits[w, 3] * (task.tail[k] / longest + (0.0 if task.capable[ROBOT, k] else 0.5))
-        value += s.traits[w, 4] * s.likes[w, k] - s.traits[w, 2] * way * TICK / task.step[HUMAN] / 10.0
-        value -= s.traits[w, 5] * math.log(-math.log(max(uniform(s.streams[w]), 1e-300)))
+        value = s.human[w].urgency * (task.tail[k] / longest + (0.0 if task.capable[ROBOT, k] else 0.5))
+        value += s.human[w].liking * s.actions[w, k].likes - s.human[w].nearness * way * TICK / task.step[HUMAN] / 10.0
+        value -= s.human[w].randomness * math.log(-math.log(max(uniform(s.streams[w]), 1e-300)))
         if value > best:
             best, chosen = value, k
     if chosen == NOTHING:
@@ -209,50 +137,50 @@ def choose_as_human(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, 
 
 
 @leaf
-def _arrive(task: TaskArrays, s: Workers, w: int, agent: int) -> None:
+def _arrive(task: TaskArrays, s: Records, w: int, agent: int) -> None:
     """An agent stands at its location: it begins to work, or waits for what must come before."""
-    action, stop = s.action[w, agent], s.stop[w, agent]
+    action, stop = s.agents[w, agent].action, s.agents[w, agent].stop
     if action == LEAVING:
-        s.left[w, agent] = s.traits[w, 9]
+        s.agents[w, agent].left = s.human[w].away_time
         _note(s, w, agent, AWAY)
         return
     last = stop == task.stop_count[action] - 1
-    if last and not s.unplanned[w, action]:
-        for i in range(s.status.shape[1]):
-            if task.before[i, action] and s.status[w, i] != DONE:
-                if s.phase[w, agent] != WAITING:
+    if last and not s.actions[w, action].unplanned:
+        for i in range(s.actions.shape[1]):
+            if task.before[i, action] and s.actions[w, i].status != DONE:
+                if s.agents[w, agent].phase != WAITING:
                     _note(s, w, agent, WAITING)
                 return
     if last:
-        s.placed[w, action] = s.ticks[w] * TICK
-    s.left[w, agent] = s.worked[w, action] * task.share[action, stop]
+        s.actions[w, action].placed = s.world[w].ticks * TICK
+    s.agents[w, agent].left = s.actions[w, action].worked * task.share[action, stop]
     _note(s, w, agent, WORKING)
 
 
 @leaf
-def _finish(task: TaskArrays, s: Workers, w: int, agent: int) -> None:
+def _finish(task: TaskArrays, s: Records, w: int, agent: int) -> None:
     """The work at a location is done: on to the next one, or the action has ended; or somebody is back."""
-    action = s.action[w, agent]
-    if s.phase[w, agent] == AWAY:
-        s.action[w, agent] = NOTHING
+    action = s.agents[w, agent].action
+    if s.agents[w, agent].phase == AWAY:
+        s.agents[w, agent].action = NOTHING
         _note(s, w, agent, IDLE)
         _wake(s, w)
         return
-    s.stop[w, agent] += 1
-    if s.stop[w, agent] < task.stop_count[action]:
+    s.agents[w, agent].stop += 1
+    if s.agents[w, agent].stop < task.stop_count[action]:
         _note(s, w, agent, WALKING)
         return
-    s.status[w, action], s.ended[w, action] = DONE, s.ticks[w] * TICK
-    s.action[w, agent] = NOTHING
+    s.actions[w, action].status, s.actions[w, action].ended = DONE, s.world[w].ticks * TICK
+    s.agents[w, agent].action = NOTHING
     _note(s, w, agent, IDLE)
     _wake(s, w)
 
 
 @inlined
-def _target(task: TaskArrays, s: Workers, w: int, agent: int) -> int:
+def _target(task: TaskArrays, s: Records, w: int, agent: int) -> int:
     """Number of the point that an agent walks to."""
-    action = s.action[w, agent]
-    place = task.home[agent] if action == LEAVING else task.stops[action, s.stop[w, agent]]
+    action = s.agents[w, agent].action
+    place = task.home[agent] if action == LEAVING else task.stops[action, s.agents[w, agent].stop]
     return int(task.field[place, agent])
 
 
@@ -270,15 +198,15 @@ def _back_off(task: TaskArrays, grid: WalkGrid, place: Floats, other: Floats) ->
 
 
 @leaf
-def _steer(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, agent: int, wanted: Floats) -> float:
+def _steer(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, w: int, agent: int, wanted: Floats) -> float:
     """Where an agent goes in the next tick, a unit vector in ``wanted`` (2,); returns how far [m], 0 if it stands."""
     place, other = s.poses[w, agent], s.poses[w, 1 - agent]
     step = task.step[agent]
     apart = math.hypot(place[0] - other[0], place[1] - other[1])
-    keep = rules.keep if max(s.stuck[w, 0], s.stuck[w, 1]) < SQUEEZE else rules.touch
-    if s.phase[w, agent] != WALKING:
-        gives_way = s.phase[w, agent] in (IDLE, WAITING) and s.phase[w, 1 - agent] == WALKING
-        if gives_way and s.stuck[w, 1 - agent] > 0.5 and apart < keep + 0.3:
+    keep = rules.keep if max(s.agents[w, 0].stuck, s.agents[w, 1].stuck) < SQUEEZE else rules.touch
+    if s.agents[w, agent].phase != WALKING:
+        gives_way = s.agents[w, agent].phase in (IDLE, WAITING) and s.agents[w, 1 - agent].phase == WALKING
+        if gives_way and s.agents[w, 1 - agent].stuck > 0.5 and apart < keep + 0.3:
             dx, dy = flee(grid, place, other, step)
             wanted[0], wanted[1] = dx, dy
             return step if dx != 0.0 or dy != 0.0 else 0.0
@@ -286,30 +214,31 @@ def _steer(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, a
     field = _target(task, s, w, agent)
     away = math.hypot(grid.points[field, 0] - place[0], grid.points[field, 1] - place[1])
     dx, dy = direction(grid, field, place[0], place[1])
-    if agent == ROBOT and s.ticks[w] * TICK < s.backing[w]:
+    if agent == ROBOT and s.world[w].ticks * TICK < s.world[w].backing:
         dx, dy = _back_off(task, grid, place, other)
         away = step
     taken = math.hypot(grid.points[field, 0] - other[0], grid.points[field, 1] - other[1]) < keep
-    if taken and apart < keep + 2.0 * step and away < 2.0 * keep and s.phase[w, 1 - agent] != WALKING:
-        s.stuck[w, agent] += TICK  # somebody stands there: it waits for its turn rather than circles
-        if s.phase[w, 1 - agent] in (WORKING, AWAY):
-            s.stuck[w, agent] = min(s.stuck[w, agent], 0.6)
+    if taken and apart < keep + 2.0 * step and away < 2.0 * keep and s.agents[w, 1 - agent].phase != WALKING:
+        s.agents[w, agent].stuck += TICK  # somebody stands there: it waits for its turn rather than circles
+        if s.agents[w, 1 - agent].phase in (WORKING, AWAY):
+            s.agents[w, agent].stuck = min(s.agents[w, agent].stuck, 0.6)
         return 0.0
     wanted[0], wanted[1] = dx, dy
     step = min(step, away)
-    dx, dy, s.side[w, agent] = sidestep(grid, place, other, wanted, step, keep, s.side[w, agent])
+    dx, dy, s.agents[w, agent].side = sidestep(grid, place, other, wanted, step, keep, s.agents[w, agent].side)
     if dx == 0.0 and dy == 0.0:
-        s.stuck[w, agent] += TICK
-        if agent == ROBOT and s.stuck[w, agent] > PATIENCE and s.ticks[w] * TICK >= s.backing[w]:
-            s.backing[w] = s.ticks[w] * TICK + BACKING
+        s.agents[w, agent].stuck += TICK
+        if agent == ROBOT and s.agents[w, agent].stuck > PATIENCE and s.world[w].ticks * TICK >= s.world[w].backing:
+            s.world[w].backing = s.world[w].ticks * TICK + BACKING
         return 0.0
-    s.stuck[w, agent] = max(0.0, s.stuck[w, agent] - 0.5 * TICK) if dx != wanted[0] or dy != wanted[1] else 0.0
+    turned = dx != wanted[0] or dy != wanted[1]
+    s.agents[w, agent].stuck = max(0.0, s.agents[w, agent].stuck - 0.5 * TICK) if turned else 0.0
     wanted[0], wanted[1] = dx, dy
     return float(step)
 
 
 @leaf
-def _advance_tick(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, wanted: Floats) -> bool:
+def _advance_tick(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, w: int, wanted: Floats) -> bool:
     """Move both by a tick; False if pymunk has to, then the commands say how."""
     lengths = (_steer(task, grid, s, rules, w, HUMAN, wanted[0]), _steer(task, grid, s, rules, w, ROBOT, wanted[1]))
     hx = s.poses[w, 0, 0] + lengths[0] * wanted[0, 0] - s.poses[w, 1, 0] - lengths[1] * wanted[1, 0]
@@ -326,36 +255,36 @@ def _advance_tick(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w:
     for agent in range(2):
         s.poses[w, agent, 0] += lengths[agent] * wanted[agent, 0]
         s.poses[w, agent, 1] += lengths[agent] * wanted[agent, 1]
-        s.path[w, agent] += lengths[agent]
+        s.agents[w, agent].path += lengths[agent]
     return True
 
 
 @leaf
-def _measure(s: Workers, rules: Rules, w: int, ticks: int) -> None:
+def _measure(s: Records, rules: Rules, w: int, ticks: int) -> None:
     """Note who is idle, whether both are busy, and how near they are, for some ticks."""
     busy = 0
     for agent in range(2):
-        phase = s.phase[w, agent]
+        phase = s.agents[w, agent].phase
         if phase in (IDLE, WAITING):
-            s.idle[w, agent] += ticks * TICK
-        elif phase != AWAY and s.action[w, agent] >= 0:
+            s.agents[w, agent].idle += ticks * TICK
+        elif phase != AWAY and s.agents[w, agent].action >= 0:
             busy += 1
     if busy == 2:
-        s.together[w] += ticks * TICK
+        s.world[w].together += ticks * TICK
     apart = math.hypot(s.poses[w, 0, 0] - s.poses[w, 1, 0], s.poses[w, 0, 1] - s.poses[w, 1, 1])
-    s.least_gap[w] = min(s.least_gap[w], apart - rules.touch)
+    s.world[w].least_gap = min(s.world[w].least_gap, apart - rules.touch)
 
 
 @leaf
-def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, ticks: int) -> None:
+def account(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, w: int, ticks: int) -> None:
     """Let time pass in which everybody does what they do: work goes on, and who has arrived begins."""
     _measure(s, rules, w, ticks)
-    s.ticks[w] += ticks
+    s.world[w].ticks += ticks
     for agent in range(2):
-        phase = s.phase[w, agent]
+        phase = s.agents[w, agent].phase
         if phase in (WORKING, AWAY):
-            s.left[w, agent] -= ticks * TICK
-            if s.left[w, agent] <= 1e-9:
+            s.agents[w, agent].left -= ticks * TICK
+            if s.agents[w, agent].left <= 1e-9:
                 _finish(task, s, w, agent)
         elif phase in (WALKING, WAITING):
             field = _target(task, s, w, agent)
@@ -364,52 +293,52 @@ def account(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int, 
                 _arrive(task, s, w, agent)
             elif phase == WAITING and _may_return(task, s, w, agent):
                 _note(s, w, agent, WALKING)
-        elif s.asleep[w, agent] and s.ticks[w] * TICK >= s.wake[w, agent] - 1e-9:
-            s.asleep[w, agent] = False
+        elif s.agents[w, agent].asleep and s.world[w].ticks * TICK >= s.agents[w, agent].wake - 1e-9:
+            s.agents[w, agent].asleep = False
 
 
 @inlined
-def _may_return(task: TaskArrays, s: Workers, w: int, agent: int) -> bool:
+def _may_return(task: TaskArrays, s: Records, w: int, agent: int) -> bool:
     """Whether who gave way while waiting goes back, since the other has gone on or the wait is over."""
-    return bool(s.phase[w, 1 - agent] != WALKING or s.stuck[w, 1 - agent] == 0.0)
+    return bool(s.agents[w, 1 - agent].phase != WALKING or s.agents[w, 1 - agent].stuck == 0.0)
 
 
 @leaf
-def _still(s: Workers, rules: Rules, w: int) -> int:
+def _still(s: Records, rules: Rules, w: int) -> int:
     """Ticks for which nobody will move or decide: 1 where somebody walks."""
-    soonest = rules.limit - s.ticks[w] * TICK
+    soonest = rules.limit - s.world[w].ticks * TICK
     for agent in range(2):
-        phase = s.phase[w, agent]
+        phase = s.agents[w, agent].phase
         if phase == WALKING:
             return 1
         if phase in (WORKING, AWAY):
-            soonest = min(soonest, s.left[w, agent])
+            soonest = min(soonest, s.agents[w, agent].left)
         elif phase == IDLE:
-            soonest = min(soonest, s.wake[w, agent] - s.ticks[w] * TICK)
+            soonest = min(soonest, s.agents[w, agent].wake - s.world[w].ticks * TICK)
         else:
-            soonest = min(soonest, TICK if s.phase[w, 1 - agent] == WAITING else rules.limit)
+            soonest = min(soonest, TICK if s.agents[w, 1 - agent].phase == WAITING else rules.limit)
     return int(max(1, math.ceil(soonest / TICK - 1e-6)))
 
 
 @leaf
-def _look(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, w: int) -> int:
+def _look(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, w: int) -> int:
     """See who has to decide, the human first; a simulated one does so at once."""
     done = True
-    for k in range(s.status.shape[1]):
-        done = done and s.status[w, k] == DONE
-    if done or s.ticks[w] * TICK >= rules.limit - 1e-9:
-        s.due[w, 0] = s.due[w, 1] = False
+    for k in range(s.actions.shape[1]):
+        done = done and s.actions[w, k].status == DONE
+    if done or s.world[w].ticks * TICK >= rules.limit - 1e-9:
+        s.agents[w, 0].due = s.agents[w, 1].due = False
         return ENDS
-    if s.phase[w, HUMAN] == IDLE and not s.asleep[w, HUMAN] and not rules.external:
+    if s.agents[w, HUMAN].phase == IDLE and not s.agents[w, HUMAN].asleep and not rules.external:
         choose_as_human(task, grid, s, rules, w)
     for agent in range(2):
-        s.due[w, agent] = s.phase[w, agent] == IDLE and not s.asleep[w, agent]
-    return DECIDES if s.due[w, 0] or s.due[w, 1] else RUNS
+        s.agents[w, agent].due = s.agents[w, agent].phase == IDLE and not s.agents[w, agent].asleep
+    return DECIDES if s.agents[w, 0].due or s.agents[w, 1].due else RUNS
 
 
 @leaf
 def advance(
-    task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, active: Bools, counter: Ints, scratch: Floats
+    task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, active: Bools, counter: Ints, scratch: Floats
 ) -> None:
     """Let the active worlds run until somebody has to decide, pymunk is needed, or the episode is over.
 
@@ -425,19 +354,19 @@ def advance(
     w = take_next(counter)
     while w < active.shape[0]:
         if active[w]:
-            s.verdict[w] = _look(task, grid, s, rules, w)
-            while s.verdict[w] == RUNS:
+            s.world[w].verdict = _look(task, grid, s, rules, w)
+            while s.world[w].verdict == RUNS:
                 ticks = _still(s, rules, w)
                 if not _advance_tick(task, grid, s, rules, w, scratch):
-                    s.verdict[w] = NEAR
+                    s.world[w].verdict = NEAR
                     break
                 account(task, grid, s, rules, w, ticks)
-                s.verdict[w] = _look(task, grid, s, rules, w)
+                s.world[w].verdict = _look(task, grid, s, rules, w)
         w = take_next(counter)
 
 
 @leaf
-def settle(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, near: NDArray[np.bool_]) -> None:
+def settle(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, near: NDArray[np.bool_]) -> None:
     """Account for the tick by which pymunk has moved the two of some worlds."""
     for w in range(near.shape[0]):
         if near[w]:
@@ -447,7 +376,7 @@ def settle(task: TaskArrays, grid: WalkGrid, s: Workers, rules: Rules, near: NDA
 @leaf
 def take_decisions(
     task: TaskArrays,
-    s: Workers,
+    s: Records,
     rules: Rules,
     agent: int,
     choices: NDArray[np.int64],
@@ -456,12 +385,12 @@ def take_decisions(
     refused: NDArray[np.bool_],
 ) -> None:
     """Begin what an agent chose, or let it wait; ``refused`` (worlds,) says where it has to; see ``decide``."""
-    count = s.status.shape[1]
+    count = s.actions.shape[1]
     for w in range(choices.shape[0]):
-        if not (asked[w] and s.due[w, agent]):
+        if not (asked[w] and s.agents[w, agent].due):
             continue
         choice = choices[w]
-        if choice < count and s.status[w, choice] == OPEN and (forced or is_allowed(task, s, w, agent, choice)):
+        if choice < count and s.actions[w, choice].status == OPEN and (forced or is_allowed(task, s, w, agent, choice)):
             begin(task, s, w, agent, choice)
         else:
             refused[w] = choice < count

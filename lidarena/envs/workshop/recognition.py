@@ -11,7 +11,8 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import leaf
 from lidarena.base.random_streams import normal, seed_stream
-from lidarena.envs.workshop.kernels import WALKING, Workers, is_allowed
+from lidarena.envs.workshop.kernels import WALKING, is_allowed
+from lidarena.envs.workshop.records import Records
 from lidarena.envs.workshop.task import HUMAN, TaskArrays
 from lidarena.envs.workshop.walking import WalkGrid, way_length
 
@@ -53,7 +54,7 @@ class Recognizer:
     def look(self, active: NDArray[np.bool_]) -> None:
         """Take in where the humans of the active worlds are."""
         core = self._core
-        estimate(core.task.arrays, core.task.grid, core.workers, active, self._streams, self._begun, self.belief)
+        estimate(core.task.arrays, core.task.grid, core.records, active, self._streams, self._begun, self.belief)
 
     def guess(self) -> NDArray[np.int64]:
         """(worlds,) the most likely action, -1 where the human does none."""
@@ -69,7 +70,7 @@ class Recognizer:
 def estimate(
     task: TaskArrays,
     grid: WalkGrid,
-    s: Workers,
+    s: Records,
     active: NDArray[np.bool_],
     streams: NDArray[np.uint64],
     begun: NDArray[np.float64],
@@ -83,20 +84,20 @@ def estimate(
     for w in range(belief.shape[0]):
         if not active[w]:
             continue
-        action = s.action[w, HUMAN]
+        action = s.agents[w, HUMAN].action
         if action < 0:
             belief[w] = 0.0
             begun[w] = np.nan
             continue
-        if begun[w] != s.begun[w, action]:
-            begun[w] = s.begun[w, action]
+        if begun[w] != s.actions[w, action].begun:
+            begun[w] = s.actions[w, action].begun
             possible = 0.0
             for k in range(belief.shape[1]):
                 belief[w, k] = 1.0 if k == action or is_allowed(task, s, w, HUMAN, k) else 0.0
                 possible += belief[w, k]
             for k in range(belief.shape[1]):
                 belief[w, k] /= possible
-        if s.stop[w, HUMAN] > 0:
+        if s.agents[w, HUMAN].stop > 0:
             continue  # what it fetched is known: the belief stays
         x = s.poses[w, HUMAN, 0] + NOISE * normal(streams[w])
         y = s.poses[w, HUMAN, 1] + NOISE * normal(streams[w])
@@ -109,11 +110,11 @@ def estimate(
 
 
 @leaf
-def _likelihood(task: TaskArrays, grid: WalkGrid, s: Workers, w: int, action: int, x: float, y: float) -> float:
+def _likelihood(task: TaskArrays, grid: WalkGrid, s: Records, w: int, action: int, x: float, y: float) -> float:
     """How well being at a place goes with being on the way to an action's first location, or there."""
     field = task.field[task.stops[action, 0], HUMAN]
     detour = way_length(grid, field, x, y)
-    if s.phase[w, HUMAN] == WALKING:
-        behind = np.hypot(x - s.origin[w, 0], y - s.origin[w, 1])
-        detour = max(detour + behind - way_length(grid, field, s.origin[w, 0], s.origin[w, 1]), 0.0)
+    if s.agents[w, HUMAN].phase == WALKING:
+        behind = np.hypot(x - s.world[w].origin[0], y - s.world[w].origin[1])
+        detour = max(detour + behind - way_length(grid, field, s.world[w].origin[0], s.world[w].origin[1]), 0.0)
     return float(max(np.exp(-detour / _SURE), _UNLIKELY))

@@ -25,7 +25,7 @@ def segments(log: NDArray[np.float64], logged: int, until: float) -> list[tuple[
     """What each agent did from when to when.
 
     Args:
-        log: (M, 4) of a world, see ``kernels.Workers``.
+        log: (M, 4) of a world, see ``records.Workers``.
         logged: How many of its rows there are.
         until: Now [s].
 

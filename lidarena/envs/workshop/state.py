@@ -9,18 +9,9 @@ from lidarena.base.errors import ConfigError
 from lidarena.base.random_streams import seed_stream
 from lidarena.envs.worker_threads import on_threads
 from lidarena.envs.workshop.humans import EXTERNAL, choose_human, draw_traits
-from lidarena.envs.workshop.kernels import (
-    IDLE,
-    NEAR,
-    NOTHING,
-    RUNS,
-    Rules,
-    Workers,
-    advance,
-    settle,
-    take_decisions,
-)
+from lidarena.envs.workshop.kernels import NEAR, NOTHING, Rules, advance, settle, take_decisions
 from lidarena.envs.workshop.options import PATIENCE, WorkshopOptions
+from lidarena.envs.workshop.records import Records, Workers, make_records, views_of
 from lidarena.envs.workshop.task import HUMAN, ROBOT, WorkshopTask
 from lidarena.envs.workshop.walking import TICK
 from lidarena.world.robots import RobotSpec
@@ -42,7 +33,8 @@ class WorkshopCore:
     Attributes:
         task: What is to be done.
         rules: What holds in all worlds.
-        workers: The state.
+        records: The state, for kernels.
+        workers: The same as arrays.
         physics: The bodies.
         human: What the keyword asks for.
     """
@@ -58,7 +50,8 @@ class WorkshopCore:
         self.rules = Rules(touch + options.separation, touch, options.wait_period, limit, outside)
         spec = RobotSpec(radius=touch / 2.0, max_speed=max(task.speeds), substep=0.02)
         self.physics = TeamPhysics(worlds, 2, spec)
-        self.workers = _no_workers(worlds, len(task.actions), self.physics.poses)
+        self.records = _fresh(worlds, len(task.actions), self.physics.poses)
+        self.workers: Workers = views_of(self.records)
         self._scratch = [np.zeros((2, 2)) for _ in range(64)]
         self.rngs: list[np.random.Generator | None] = [None] * worlds
 
@@ -72,9 +65,9 @@ class WorkshopCore:
         s, task = self.workers, self.task
         kind = self.human if isinstance(self.human, str) else "free"
         traits, likes, refuses = draw_traits("free" if kind == EXTERNAL else kind, rng, task)
-        fresh = _no_workers(1, len(task.actions), np.zeros((1, 2, 3)))
-        for name, array in s._asdict().items():
-            array[world] = getattr(fresh, name)[0]
+        fresh = _fresh(1, len(task.actions), np.zeros((1, 2, 3)))
+        for array, first in zip(self.records, fresh, strict=True):
+            array[world] = first[0]
         s.traits[world], s.likes[world], s.refuses[world] = traits, likes, refuses
         s.streams[world] = seed_stream(rng)
         self.rngs[world] = rng
@@ -97,20 +90,20 @@ class WorkshopCore:
             (worlds,) where it waits instead, since it may not do what it chose.
         """
         refused = np.zeros(self.worlds, np.bool_)
-        take_decisions(self.task.arrays, self.workers, self.rules, agent, choices, asked, forced, refused)
+        take_decisions(self.task.arrays, self.records, self.rules, agent, choices, asked, forced, refused)
         return refused
 
     def run(self, active: NDArray[np.bool_]) -> None:
         """Let the active worlds run until somebody has to decide, or their episodes end."""
         going = active.copy()
-        task, grid, s, rules = self.task.arrays, self.task.grid, self.workers, self.rules
+        task, grid, s, rules = self.task.arrays, self.task.grid, self.records, self.rules
         while going.any():
             counter = np.zeros(1, np.int64)
             on_threads(
                 min(self.worlds, len(self._scratch)),
                 lambda thread: advance(task, grid, s, rules, going, counter, self._scratch[thread]),  # noqa: B023
             )
-            going &= s.verdict == NEAR
+            going &= self.workers.verdict == NEAR
             if going.any():
                 self._push(going)
 
@@ -124,7 +117,7 @@ class WorkshopCore:
         moved = np.hypot(*np.moveaxis(self.physics.poses[..., :2] - before[..., :2], 2, 0))
         s.path[near] += moved[near]
         s.contacts[near & self.physics.touched_robot.any(axis=1)] += 1
-        settle(self.task.arrays, self.task.grid, s, self.rules, near)
+        settle(self.task.arrays, self.task.grid, self.records, self.rules, near)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
@@ -144,43 +137,8 @@ class WorkshopCore:
             self.physics.furnish(world, self.task.plan)
 
 
-def _no_workers(worlds: int, count: int, poses: NDArray[np.float64]) -> Workers:
-    """Worlds in which nothing has happened yet."""
-    pair, each = (worlds, 2), (worlds, count)
-    nan = np.full(each, np.nan)
-    return Workers(
-        ticks=np.zeros(worlds, np.int64),
-        poses=poses,
-        phase=np.full(pair, IDLE, np.int64),
-        action=np.full(pair, NOTHING, np.int64),
-        stop=np.zeros(pair, np.int64),
-        left=np.zeros(pair),
-        asleep=np.zeros(pair, np.bool_),
-        wake=np.zeros(pair),
-        deaf=np.zeros(pair, np.bool_),
-        side=np.zeros(pair, np.int64),
-        stuck=np.zeros(pair),
-        backing=np.zeros(worlds),
-        status=np.zeros(each, np.int64),
-        agent=np.full(each, -1, np.int64),
-        begun=nan.copy(),
-        placed=nan.copy(),
-        ended=nan.copy(),
-        worked=nan.copy(),
-        origin=np.zeros(pair),
-        unplanned=np.zeros(each, np.bool_),
-        idle=np.zeros(pair),
-        together=np.zeros(worlds),
-        path=np.zeros(pair),
-        least_gap=np.full(worlds, np.inf),
-        contacts=np.zeros(worlds, np.int64),
-        traits=np.zeros((worlds, 10)),
-        likes=np.zeros(each),
-        refuses=np.zeros(each, np.bool_),
-        streams=np.zeros((worlds, 4), np.uint64),
-        due=np.zeros(pair, np.bool_),
-        verdict=np.full(worlds, RUNS, np.int64),
-        commands=np.zeros((worlds, 2, 2)),
-        log=np.zeros((worlds, _LOG * count, 4)),
-        logged=np.zeros(worlds, np.int64),
-    )
+def _fresh(worlds: int, count: int, poses: NDArray[np.float64]) -> Records:
+    """Worlds in which nobody has begun anything."""
+    records = make_records(worlds, count, _LOG * count, poses)
+    records.agents["action"] = NOTHING
+    return records

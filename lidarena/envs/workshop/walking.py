@@ -219,7 +219,7 @@ def walking_time(grid: WalkGrid, start: int, goal: int, other: Floats, step: flo
         limit: Infinite if it takes longer than this [s].
     """
     place, wanted = np.empty(2), np.empty(2)
-    place[:] = grid.points[start]
+    place[0], place[1] = grid.points[start, 0], grid.points[start, 1]
     side, alone = 0, math.isnan(other[0])
     ticks = 0
     while True:

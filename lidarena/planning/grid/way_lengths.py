@@ -90,7 +90,8 @@ def way_lengths(passable: NDArray[np.bool_], row: int, column: int) -> NDArray[n
     wide = columns + 2  # a border of impassable cells spares asking whether a neighbour is on the grid
     free = np.zeros((rows + 2) * wide, np.bool_)
     for r in range(rows):
-        free[(r + 1) * wide + 1 : (r + 1) * wide + 1 + columns] = passable[r]
+        for c in range(columns):
+            free[(r + 1) * wide + 1 + c] = passable[r, c]
     lengths, filed = np.full(len(free), np.inf), np.full(len(free), -1, np.int32)
     waiting, counts = np.empty((_RINGS, len(free)), np.int32), np.zeros(_RINGS, np.int64)
     left = _file((row + 1) * wide + column + 1, 0.0, lengths, filed, waiting, counts)
