@@ -69,13 +69,12 @@ class GanttChart:
                 axes.text(0.5 * (begin + end), low + 0.5 * self.height, name, rotation=90, ha="center", va="center",
                           fontsize=6, color="white")  # fmt: skip
         for agent, name in enumerate(_LANES):
-            axes.text(0.0, (2.45 - 1.2 * agent) * self.height, name, fontsize=8, va="bottom", color=_COLOURS[agent])
             axes.scatter([], [], s=70, marker="s", color=_COLOURS[agent], label=f"{name} works")
         axes.scatter([], [], s=70, marker="s", color=BLUE, alpha=0.35, label="walks (pale)")
         axes.scatter([], [], s=70, marker="s", color=GREY, alpha=0.4, label="waits for the other")
         axes.scatter([], [], s=70, marker="s", color="black", label="away")
         axes.axvline(self.deadline, color="black", linestyle="--", linewidth=1.0, label="deadline")
-        axes.set_yticks([])
+        axes.set_yticks([(1.9 - 1.2 * agent) * self.height for agent in range(2)], _LANES)
 
 
 def _look(phase: int, agent: int) -> tuple[str | None, float]:

@@ -1,8 +1,9 @@
 """Videos of episodes, written frame by frame: MP4 by OpenCV, GIF by Pillow."""
 
+from functools import partial
 from pathlib import Path
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 import cv2
 import numpy as np
@@ -58,13 +59,20 @@ class VideoRecorder:
     def add(self, env: Env) -> None:
         """Append what the environment renders now, one time in `STEPS_PER_FRAME`.
 
+        An environment whose steps last seconds has ``moments``, and renders each of them by ``render_at``.
+
         Raises:
             ConfigError: The environment renders nothing, or the file cannot be written.
         """
-        self._seen += 1
-        if (self._seen - 1) % STEPS_PER_FRAME:
-            return
-        frame = env.render()
+        world: Any = getattr(env, "unwrapped", env)
+        moments = getattr(world, "moments", None)
+        pictures = [env.render] if moments is None else [partial(world.render_at, time) for time in moments]
+        for picture in pictures:
+            self._seen += 1
+            if (self._seen - 1) % STEPS_PER_FRAME == 0:
+                self._append(env, picture())
+
+    def _append(self, env: Env, frame: object) -> None:
         if not isinstance(frame, np.ndarray):
             raise ConfigError("'videos' is set, but an environment renders no pictures (render_mode 'rgb_array')")
         if self._count == 0:

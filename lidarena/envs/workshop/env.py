@@ -10,6 +10,7 @@ from lidarena.envs.base_env import SingleWorld
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.workshop.episodes import WorkshopEpisodes
 from lidarena.envs.workshop.options import WorkshopKeywords, WorkshopOptions
+from lidarena.envs.workshop.rendering import draw_workshop
 from lidarena.envs.workshop.task import WorkshopTask
 from lidarena.world.floorplan import Floorplan
 
@@ -92,7 +93,7 @@ class WorkshopEnv(SingleWorld):
     | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: the task's |
     | `separation` | float | `0.4` | distance between the two that is kept [m] |
     | `wait_period` | float | `5.0` | who waits is asked again after this time at the latest [s] |
-    | `time_limit` | float or None | `None` | truncates [s]; None: six deadlines |
+    | `time_limit` | float or None | `None` | truncates [s]; None: six deadlines or longest chains |
     | `recognition` | str | `"exact"` | `"position"`: the human's action is guessed from its position |
     | `observation` | str or observer | `"features"` | what is seen, see above |
     | `reward` | str, dict or function | `"default"` | what a step is worth, see above |
@@ -133,6 +134,16 @@ class WorkshopEnv(SingleWorld):
     def floorplan(self) -> Floorplan:
         """The floor, for pictures."""
         return self.task.plan
+
+    @property
+    def moments(self) -> list[float]:
+        """Times within the last step of which there are pictures, for a film [s]."""
+        times: list[float] = self.episodes.moments(0)
+        return times
+
+    def render_at(self, time: float) -> NDArray[np.uint8]:
+        """The picture of one of the ``moments``."""
+        return draw_workshop(self.episodes.core, 0, time)
 
     def action_masks(self) -> NDArray[np.bool_]:
         """What is allowed (n + 1,), as sb3-contrib's MaskablePPO asks for it."""

@@ -18,10 +18,12 @@ from lidarena.envs.workshop.kernels import DECIDES, DONE, ENDS, RUNS
 from lidarena.envs.workshop.observations import LARGEST, OBSERVATIONS, OF_ALL, PER_ACTION, observe
 from lidarena.envs.workshop.options import WorkshopOptions
 from lidarena.envs.workshop.recognition import Recognizer
+from lidarena.envs.workshop.records import PICTURE_TICKS
 from lidarena.envs.workshop.rendering import draw_workshop
 from lidarena.envs.workshop.rewards import REWARDS, weigh_terms
 from lidarena.envs.workshop.state import WorkshopCore
 from lidarena.envs.workshop.task import HUMAN, ROBOT
+from lidarena.envs.workshop.walking import TICK
 
 
 class WorkshopEpisodes(OneAgentEpisodes):
@@ -86,7 +88,7 @@ class WorkshopEpisodes(OneAgentEpisodes):
         over = s.verdict == ENDS
         terminated = over & (undone == 0.0)
         truncated = ~terminated & (over | self._out_of_steps())
-        spent = (self.core.time - self._before * 0.1) / task.deadline
+        spent = (self.core.time - self._before * TICK) / task.deadline
         weighed = weigh_terms(
             self._rewards.chosen.weights, spent, (s.idle - idle) / task.deadline, over, undone,
             self.core.time / task.deadline,
@@ -153,7 +155,7 @@ class WorkshopEpisodes(OneAgentEpisodes):
     def _facts(self) -> Info:
         facts = describe(self.core, self.recognizer)
         facts |= measure(self.core)
-        facts["duration"] = (self.core.workers.ticks - self._before) * 0.1
+        facts["duration"] = (self.core.workers.ticks - self._before) * TICK
         facts["action_mask"] = self.action_masks()
         facts["refused"] = self._refused.copy()
         if self.options.expose_truth:
@@ -167,6 +169,12 @@ class WorkshopEpisodes(OneAgentEpisodes):
     def picture(self, world: int) -> NDArray[np.uint8] | None:
         """The floor and the schedule of one world; None unless the worlds are drawn."""
         return None if self.options.render_mode is None else draw_workshop(self.core, world)
+
+    def moments(self, world: int) -> list[float]:
+        """Times within the last step at which poses of one world were noted [s]; none unless the worlds are drawn."""
+        first = self._before[world] // PICTURE_TICKS + 1 if self._before[world] else 0
+        last = min(int(self.core.workers.ticks[world]) // PICTURE_TICKS, self.core.records.trace.shape[1] - 1)
+        return [moment * PICTURE_TICKS * TICK for moment in range(first, last + 1)]
 
     @property
     def restorable(self) -> bool:

@@ -38,7 +38,7 @@ def describe(core: "WorkshopCore", recognizer: "Recognizer | None" = None) -> In
             "doing": doing,
             "phase": s.phase.copy(),
             "stop": s.stop.copy(),
-            "since": _since(core),
+            "since": core.time[:, None] - s.changed,
             "human_present": (s.phase[:, HUMAN] != AWAY) & (s.action[:, HUMAN] != LEAVING),
             "status": s.status.copy(),
             "agent": s.agent.copy(),
@@ -51,16 +51,6 @@ def describe(core: "WorkshopCore", recognizer: "Recognizer | None" = None) -> In
             "allowed_robot": free[:, ROBOT],
         }
     )
-
-
-def _since(core: "WorkshopCore") -> Floats:
-    """(worlds, 2) for how long each has done what it does [s]."""
-    s = core.workers
-    since = np.zeros((core.worlds, 2))
-    for agent in range(2):
-        mine = (s.log[:, :, 0] == agent) & (np.arange(s.log.shape[1]) < s.logged[:, None])
-        since[:, agent] = np.where(mine, s.log[:, :, 3], 0.0).max(axis=1)
-    return core.time[:, None] - since
 
 
 def measure(core: "WorkshopCore") -> Info:

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import inlined, leaf, take_next
 from lidarena.base.random_streams import normal, uniform
 from lidarena.envs.workshop.humans import TRUNCATION, WITHIN_BOUNDS
-from lidarena.envs.workshop.records import Records
+from lidarena.envs.workshop.records import PICTURE_TICKS, Records
 from lidarena.envs.workshop.task import HUMAN, ROBOT, TaskArrays
 from lidarena.envs.workshop.walking import TICK, WalkGrid, direction, flee, sidestep, way_length
 
@@ -60,7 +60,7 @@ def is_allowed(task: TaskArrays, s: Records, w: int, agent: int, action: int) ->
 @inlined
 def _note(s: Records, w: int, agent: int, phase: int) -> None:
     """An agent does something else from now on."""
-    s.agents[w, agent].phase = phase
+    s.agents[w, agent].phase, s.agents[w, agent].changed = phase, s.world[w].ticks * TICK
     k = s.world[w].logged
     if k < s.log.shape[1]:
         s.log[w, k, 0], s.log[w, k, 1] = agent, phase
@@ -77,8 +77,21 @@ def _wake(s: Records, w: int) -> None:
 
 
 @leaf
-def rest(s: Records, w: int, agent: int, duration: float, deaf: bool) -> None:
+def _remember(task: TaskArrays, s: Records, w: int, chosen: int) -> None:
+    """What the human has shown of its preferences by choosing an action, or ``NOTHING``, among what it may."""
+    for k in range(s.actions.shape[1]):
+        if k != chosen and is_allowed(task, s, w, HUMAN, k):
+            if chosen == NOTHING:
+                s.actions[w, k].declined += 1
+            else:
+                s.actions[w, k].passed_over += 1
+
+
+@leaf
+def rest(task: TaskArrays, s: Records, w: int, agent: int, duration: float, deaf: bool) -> None:
     """An agent does nothing for a while; unless it is ``deaf``, until something happens."""
+    if agent == HUMAN:
+        _remember(task, s, w, NOTHING)
     s.agents[w, agent].asleep, s.agents[w, agent].deaf = True, deaf
     s.agents[w, agent].wake = s.world[w].ticks * TICK + duration
 
@@ -86,6 +99,8 @@ def rest(s: Records, w: int, agent: int, duration: float, deaf: bool) -> None:
 @leaf
 def begin(task: TaskArrays, s: Records, w: int, agent: int, action: int) -> None:
     """An agent sets out for an action; how long the work takes is drawn now."""
+    if agent == HUMAN:
+        _remember(task, s, w, action)
     s.actions[w, action].unplanned = not is_allowed(task, s, w, agent, action)
     s.actions[w, action].status, s.actions[w, action].agent = RUNNING, agent
     s.actions[w, action].begun = s.world[w].ticks * TICK
@@ -114,7 +129,7 @@ def choose_as_human(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, 
         _wake(s, w)
         return
     if s.human[w].rest_chance > 0.0 and not s.agents[w, HUMAN].deaf and uniform(s.streams[w]) < s.human[w].rest_chance:
-        rest(s, w, HUMAN, -s.human[w].rest_time * math.log(1.0 - uniform(s.streams[w])), True)
+        rest(task, s, w, HUMAN, -s.human[w].rest_time * math.log(1.0 - uniform(s.streams[w])), True)
         return
     s.agents[w, HUMAN].deaf = False
     best, chosen = -np.inf, NOTHING
@@ -131,7 +146,7 @@ def choose_as_human(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, 
         if value > best:
             best, chosen = value, k
     if chosen == NOTHING:
-        rest(s, w, HUMAN, rules.wait, False)
+        rest(task, s, w, HUMAN, rules.wait, False)
     else:
         begin(task, s, w, HUMAN, chosen)
 
@@ -276,9 +291,22 @@ def _measure(s: Records, rules: Rules, w: int, ticks: int) -> None:
 
 
 @leaf
+def _trace(s: Records, w: int, ticks: int) -> None:
+    """Note where both are in the next ticks, for pictures."""
+    begin = s.world[w].ticks
+    first = begin // PICTURE_TICKS + 1 if begin > 0 else 0
+    last = min((begin + ticks) // PICTURE_TICKS, s.trace.shape[1] - 1)
+    for moment in range(first, last + 1):
+        for agent in range(2):
+            for k in range(3):
+                s.trace[w, moment, agent, k] = s.poses[w, agent, k]
+
+
+@leaf
 def account(task: TaskArrays, grid: WalkGrid, s: Records, rules: Rules, w: int, ticks: int) -> None:
     """Let time pass in which everybody does what they do: work goes on, and who has arrived begins."""
     _measure(s, rules, w, ticks)
+    _trace(s, w, ticks)
     s.world[w].ticks += ticks
     for agent in range(2):
         phase = s.agents[w, agent].phase
@@ -394,4 +422,4 @@ def take_decisions(
             begin(task, s, w, agent, choice)
         else:
             refused[w] = choice < count
-            rest(s, w, agent, rules.wait, False)
+            rest(task, s, w, agent, rules.wait, False)

@@ -53,7 +53,7 @@ class WorkshopOptions:
         separation: Distance between the surfaces of the two that is kept on the floor [m]. Where two block each other
             in a passage for 20 s it is given up, and ``info["separation"]`` tells.
         wait_period: Who waits is asked again when something happens, and after this time at the latest [s].
-        time_limit: Truncates [s]; None: six deadlines.
+        time_limit: Truncates [s]; None: six deadlines or longest chains.
         recognition: ``"exact"`` tells what the human does; ``"position"`` what a hidden Markov model makes of the
             human's noisy position.
         observation: ``"features"``, or one's own, see ``lidarena.envs.observers``.

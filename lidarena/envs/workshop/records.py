@@ -15,6 +15,9 @@ Floats = NDArray[np.float64]
 Ints = NDArray[np.int64]
 Bools = NDArray[np.bool_]
 
+PICTURE_TICKS = 5
+"""Ticks between two moments of a film."""
+
 _WORLD = [
     ("ticks", np.int64), ("backing", np.float64), ("together", np.float64), ("least_gap", np.float64),
     ("contacts", np.int64), ("verdict", np.int64), ("logged", np.int64), ("origin", np.float64, (2,)),
@@ -22,11 +25,12 @@ _WORLD = [
 _AGENT = [
     ("phase", np.int64), ("action", np.int64), ("stop", np.int64), ("left", np.float64), ("asleep", np.bool_),
     ("wake", np.float64), ("deaf", np.bool_), ("side", np.int64), ("stuck", np.float64), ("idle", np.float64),
-    ("path", np.float64), ("due", np.bool_),
+    ("path", np.float64), ("due", np.bool_), ("changed", np.float64),
 ]  # fmt: skip
 _ACTION = [
     ("status", np.int64), ("agent", np.int64), ("begun", np.float64), ("placed", np.float64), ("ended", np.float64),
     ("worked", np.float64), ("unplanned", np.bool_), ("likes", np.float64), ("refuses", np.bool_),
+    ("passed_over", np.int64), ("declined", np.int64),
 ]  # fmt: skip
 
 
@@ -49,6 +53,8 @@ class Records(NamedTuple):
     """(W, M, 4)"""
     streams: NDArray[np.uint64]
     """(W, 4)"""
+    trace: Floats
+    """(W, K, 2, 3)"""
 
 
 class Workers(NamedTuple):
@@ -110,8 +116,14 @@ class Workers(NamedTuple):
     """(W, n)"""
     refuses: Bools
     """(W, n)"""
+    passed_over: Ints
+    """(W, n) how often the human has begun something else while it was allowed this"""
+    declined: Ints
+    """(W, n) how often the human has rested while it was allowed this"""
     streams: NDArray[np.uint64]
     """(W, 4)"""
+    changed: Floats
+    """(W, 2) when it began what it does [s]"""
     due: Bools
     """(W, 2) who has to decide"""
     verdict: Ints
@@ -120,11 +132,13 @@ class Workers(NamedTuple):
     """(W, 2, 2) speed and turn rate for pymunk [m/s], [rad/s]"""
     log: Floats
     """(W, M, 4) agent, phase, action and time of every change [s]"""
+    trace: Floats
+    """(W, K, 2, 3) poses every ``PICTURE_TICKS``; K is 0 where nothing is drawn"""
     logged: Ints
     """(W,) how many there are"""
 
 
-def make_records(worlds: int, actions: int, changes: int, poses: Floats) -> Records:
+def make_records(worlds: int, actions: int, changes: int, poses: Floats, pictures: int = 0) -> Records:
     """Records of worlds in which nothing has happened, all numbers 0 but those that mean "not yet".
 
     Args:
@@ -132,6 +146,7 @@ def make_records(worlds: int, actions: int, changes: int, poses: Floats) -> Reco
         actions: Of the task.
         changes: Of what somebody does that are noted, at most.
         poses: (worlds, 2, 3) that is used as it is.
+        pictures: For which poses are noted, at most.
     """
     records = Records(
         np.zeros(worlds, np.dtype(_WORLD, align=True)),
@@ -142,6 +157,7 @@ def make_records(worlds: int, actions: int, changes: int, poses: Floats) -> Reco
         np.zeros((worlds, 2, 2)),
         np.zeros((worlds, changes, 4)),
         np.zeros((worlds, 4), np.uint64),
+        np.zeros((worlds, pictures, 2, 3)),
     )
     records.world["least_gap"] = np.inf
     records.actions["agent"] = -1
@@ -157,5 +173,5 @@ def views_of(records: Records) -> Workers:
         assert array.dtype.names is not None
         found |= {name: array[name] for name in array.dtype.names}
     found["traits"] = records.human.view(np.float64).reshape(len(records.human), -1)
-    whole = {name: getattr(records, name) for name in ("poses", "commands", "log", "streams")}
+    whole = {name: getattr(records, name) for name in ("poses", "commands", "log", "streams", "trace")}
     return Workers(**found, **whole)

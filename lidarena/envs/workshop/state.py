@@ -11,7 +11,7 @@ from lidarena.envs.worker_threads import on_threads
 from lidarena.envs.workshop.humans import EXTERNAL, choose_human, draw_traits
 from lidarena.envs.workshop.kernels import NEAR, NOTHING, Rules, advance, settle, take_decisions
 from lidarena.envs.workshop.options import PATIENCE, WorkshopOptions
-from lidarena.envs.workshop.records import Records, Workers, make_records, views_of
+from lidarena.envs.workshop.records import PICTURE_TICKS, Records, Workers, make_records, views_of
 from lidarena.envs.workshop.task import HUMAN, ROBOT, WorkshopTask
 from lidarena.envs.workshop.walking import TICK
 from lidarena.world.robots import RobotSpec
@@ -45,12 +45,14 @@ class WorkshopCore:
         self.task, self.options, self.worlds = task, options, worlds
         self.human = choose_human(options.human)
         touch = sum(task.radii)
-        limit = PATIENCE * task.deadline if options.time_limit is None else options.time_limit
+        patience = PATIENCE * max(task.deadline, float(task.arrays.tail.max()))  # a deadline too short binds nobody
+        limit = patience if options.time_limit is None else options.time_limit
         outside = self.human == EXTERNAL or not isinstance(self.human, str)
         self.rules = Rules(touch + options.separation, touch, options.wait_period, limit, outside)
         spec = RobotSpec(radius=touch / 2.0, max_speed=max(task.speeds), substep=0.02)
         self.physics = TeamPhysics(worlds, 2, spec)
-        self.records = _fresh(worlds, len(task.actions), self.physics.poses)
+        self._pictures = 0 if options.render_mode is None else int(limit / TICK) // PICTURE_TICKS + 2
+        self.records = _fresh(worlds, len(task.actions), self.physics.poses, self._pictures)
         self.workers: Workers = views_of(self.records)
         self._scratch = [np.zeros((2, 2)) for _ in range(64)]
         self.rngs: list[np.random.Generator | None] = [None] * worlds
@@ -65,7 +67,7 @@ class WorkshopCore:
         s, task = self.workers, self.task
         kind = self.human if isinstance(self.human, str) else "free"
         traits, likes, refuses = draw_traits("free" if kind == EXTERNAL else kind, rng, task)
-        fresh = _fresh(1, len(task.actions), np.zeros((1, 2, 3)))
+        fresh = _fresh(1, len(task.actions), np.zeros((1, 2, 3)), self._pictures)
         for array, first in zip(self.records, fresh, strict=True):
             array[world] = first[0]
         s.traits[world], s.likes[world], s.refuses[world] = traits, likes, refuses
@@ -137,8 +139,8 @@ class WorkshopCore:
             self.physics.furnish(world, self.task.plan)
 
 
-def _fresh(worlds: int, count: int, poses: NDArray[np.float64]) -> Records:
+def _fresh(worlds: int, count: int, poses: NDArray[np.float64], pictures: int) -> Records:
     """Worlds in which nobody has begun anything."""
-    records = make_records(worlds, count, _LOG * count, poses)
+    records = make_records(worlds, count, _LOG * count, poses, pictures)
     records.agents["action"] = NOTHING
     return records

@@ -2,9 +2,10 @@ import numpy as np
 import pytest
 
 from lidarena.base.errors import ActionError
+from lidarena.envs.workshop.env import WorkshopEnv
 from lidarena.envs.workshop.episodes import WorkshopEpisodes
 from lidarena.envs.workshop.options import WorkshopOptions
-from tests.envs.workshop.workshops import Sleeper, loose
+from tests.envs.workshop.workshops import Sleeper, chain, loose, play
 
 
 def episodes(worlds: int = 3, **keywords: object) -> WorkshopEpisodes:
@@ -49,3 +50,9 @@ def test_time_and_decisions_are_limited() -> None:
     assert outcomes[-1][0][0] < -10.0  # nothing was done
     few = episodes(1, max_episode_steps=2, human=Sleeper)
     assert [bool(few.step([3])[2][0]) for _ in range(2)] == [False, True]
+
+
+def test_a_deadline_that_nobody_can_meet_does_not_cut_the_episode_off() -> None:
+    hopeless = chain(3) | {"deadline": 2.0}
+    info = play(WorkshopEnv(task=hopeless, human="free"), seed=0)[-1]
+    assert info["success"] and not info["deadline_met"] and info["time"] > 12.0

@@ -13,6 +13,7 @@ with warnings.catch_warnings():
 
 from lidarena.base.errors import ActionError, ConfigError
 from lidarena.envs import workshop_v0
+from lidarena.envs.workshop.observations import PER_ACTION
 from tests.envs.workshop.workshops import action, chain, loose, task_of
 
 
@@ -65,7 +66,7 @@ def test_a_saved_environment_goes_on_to_the_bit() -> None:
 def test_the_agent_sees_itself_as_the_robot() -> None:
     env = workshop_v0.parallel_env(task=task_of({"x": action("a", robot=None), "y": action("d", human=None)}))
     seen, _ = env.reset(seed=0)
-    human, robot = seen["human"][:26].reshape(2, 13), seen["robot"][:26].reshape(2, 13)
+    human, robot = (seen[name][: 2 * PER_ACTION].reshape(2, -1) for name in ("human", "robot"))
     assert human[0, 3:5].tolist() == robot[1, 3:5].tolist() == [1, 0]
 
 

@@ -1,4 +1,5 @@
 import numpy as np
+import pytest
 
 from lidarena.envs.workshop.env import BatchedWorkshop, WorkshopEnv
 from lidarena.envs.workshop.kernels import AWAY, IDLE, WAITING, WALKING, WORKING
@@ -34,8 +35,26 @@ def test_pictures_show_the_two_and_their_schedule() -> None:
     floor = after[48 : 48 + 420]
     for colour in AGENT_COLOURS:
         assert (np.abs(floor.astype(int) - colour).sum(axis=2) < 12).sum() > 200
-    chart = after[-100:-40]
-    assert (chart != before[-100:-40]).any()
+    chart = slice(48 + 420, 48 + 420 + 68)
+    assert (after[chart] != before[chart]).any()
     batch = BatchedWorkshop(2, render_mode="rgb_array")
     batch.reset(seed=0)
     assert len(batch.render() or ()) == 2 and BatchedWorkshop(1).render() is None
+
+
+def test_a_film_shows_what_happened_within_a_step() -> None:
+    env = WorkshopEnv(task="gearbox", human="free", render_mode="rgb_array", expose_truth=True)
+    env.reset(seed=0)
+    for _ in range(2):
+        _, _, _, _, info = env.step(int(np.flatnonzero(env.action_masks())[0]))
+    moments = env.moments
+    assert np.allclose(np.diff(moments), 0.5) and len(moments) >= 3
+    assert info["time"] - info["duration"] < moments[0] and moments[-1] <= info["time"] < moments[-1] + 0.5
+    pictures = [env.render_at(time) for time in moments]
+    assert all((one != other).any() for one, other in zip(pictures, pictures[1:], strict=False))
+    trace = env.episodes.core.workers.trace[0]
+    if moments[-1] == info["time"]:
+        assert np.array_equal(trace[round(moments[-1] / 0.5)], info["pose"])
+    walked = np.hypot(*np.diff(trace[: round(moments[-1] / 0.5) + 1, :, :2], axis=0).T).sum(axis=1)
+    assert walked == pytest.approx(info["path_length"], rel=0.1)
+    assert WorkshopEnv(task="gearbox").moments == []
