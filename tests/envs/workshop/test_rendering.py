@@ -1,3 +1,5 @@
+from itertools import pairwise
+
 import numpy as np
 import pytest
 
@@ -51,7 +53,7 @@ def test_a_film_shows_what_happened_within_a_step() -> None:
     assert np.allclose(np.diff(moments), 0.5) and len(moments) >= 3
     assert info["time"] - info["duration"] < moments[0] and moments[-1] <= info["time"] < moments[-1] + 0.5
     pictures = [env.render_at(time) for time in moments]
-    assert all((one != other).any() for one, other in zip(pictures, pictures[1:], strict=False))
+    assert all((one != other).any() for one, other in pairwise(pictures))
     trace = env.episodes.core.workers.trace[0]
     if moments[-1] == info["time"]:
         assert np.array_equal(trace[round(moments[-1] / 0.5)], info["pose"])
