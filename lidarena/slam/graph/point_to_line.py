@@ -9,7 +9,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel, leaf
+from lidarena.base.jit import kernel, leaf, merged
 from lidarena.slam.graph.surface_points import BeamFan, SurfacePoints
 
 _SAME_SIDE = 0.6
@@ -45,55 +45,83 @@ def add_pair(
             (x, y, t), the sum of squared distances, the number of points that fit, the number that could have fitted.
     """
     cos, sin = math.cos(motion[2]), math.sin(motion[2])
-    points, normals, weights = store.points, store.normals, store.weights
-    limit = nearby * nearby
     for b in range(0, fan.beams, stride):
-        wi = weights[i, b]
-        if wi == 0.0:
+        weight = store.weights[i, b]
+        if weight == 0.0:
             continue
-        ax, ay = float(points[i, b, 0]), float(points[i, b, 1])
+        ax, ay = float(store.points[i, b, 0]), float(store.points[i, b, 1])
         rx, ry = cos * ax - sin * ay, sin * ax + cos * ay
         x, y = rx + motion[0], ry + motion[1]
-        distance = math.sqrt(x * x + y * y) + 1e-9
-        turn = math.atan2(y, x) - fan.first
-        turn -= 2.0 * math.pi * math.floor((turn + 0.5 * (2.0 * math.pi - fan.step * fan.beams)) / (2.0 * math.pi))
-        middle = math.floor(turn / fan.step + 0.5)
+        middle = _beam_towards(fan, x, y)
         if middle < -2 or middle > fan.beams + 1:
             continue
-        width = min(int(nearby / (distance * abs(fan.step))) + 1, _MOST_BEAMS)
-        nix, niy = float(normals[i, b, 0]), float(normals[i, b, 1])
-        nx, ny = cos * nix - sin * niy, sin * nix + cos * niy
-        best, chosen = math.inf, -1
-        for k in range(max(middle - width, 0), min(middle + width + 1, fan.beams)):
-            dx, dy = x - points[j, k, 0], y - points[j, k, 1]
-            d = dx * dx + dy * dy
-            if d >= best or weights[j, k] == 0.0:
-                continue
-            if nx * normals[j, k, 0] + ny * normals[j, k, 1] <= _SAME_SIDE:
-                continue
-            across = dx * normals[j, k, 0] + dy * normals[j, k, 1]
-            extent = max(nearby, float(store.extents[j, k]))
-            if across * across < limit and d - across * across < extent * extent:
-                best, chosen = d, k
         system[11] += 1.0
-        if chosen < 0:
+        nix, niy = float(store.normals[i, b, 0]), float(store.normals[i, b, 1])
+        chosen = _nearest(store, fan, j, middle, (x, y, cos * nix - sin * niy, sin * nix + cos * niy), nearby)
+        if chosen >= 0:
+            _add_point(store, j, chosen, (x, y, -ry, rx), weight, system)
+
+
+@merged
+def _beam_towards(fan: BeamFan, x: float, y: float) -> int:
+    """Which beam of a laser goes towards a point; below 0 or beyond the last where none does."""
+    turn = math.atan2(y, x) - fan.first
+    turn -= 2.0 * math.pi * math.floor((turn + 0.5 * (2.0 * math.pi - fan.step * fan.beams)) / (2.0 * math.pi))
+    return math.floor(turn / fan.step + 0.5)
+
+
+@merged
+def _nearest(
+    store: SurfacePoints, fan: BeamFan, j: int, middle: int, point: tuple[float, float, float, float], nearby: float
+) -> int:
+    """The beam of scan ``j`` near ``middle`` whose surface a point (x, y, normal) lies on best; -1 if on none."""
+    points, normals = store.points, store.normals
+    x, y, nx, ny = point
+    limit = nearby * nearby
+    distance = math.sqrt(x * x + y * y) + 1e-9
+    width = min(int(nearby / (distance * abs(fan.step))) + 1, _MOST_BEAMS)
+    best, chosen = math.inf, -1
+    for k in range(max(middle - width, 0), min(middle + width + 1, fan.beams)):
+        dx, dy = x - points[j, k, 0], y - points[j, k, 1]
+        d = dx * dx + dy * dy
+        if d >= best or store.weights[j, k] == 0.0:
             continue
-        qx, qy = float(normals[j, chosen, 0]), float(normals[j, chosen, 1])
-        off = qx * (x - points[j, chosen, 0]) + qy * (y - points[j, chosen, 1])
-        turning = -qx * ry + qy * rx
-        scaled = off / SPREAD
-        w = wi * weights[j, chosen] / (1.0 + scaled * scaled) / (SPREAD * SPREAD)
-        system[0] += w * qx * qx
-        system[1] += w * qx * qy
-        system[2] += w * qx * turning
-        system[3] += w * qy * qy
-        system[4] += w * qy * turning
-        system[5] += w * turning * turning
-        system[6] += w * qx * off
-        system[7] += w * qy * off
-        system[8] += w * turning * off
-        system[9] += off * off
-        system[10] += 1.0
+        if nx * normals[j, k, 0] + ny * normals[j, k, 1] <= _SAME_SIDE:
+            continue
+        across = dx * normals[j, k, 0] + dy * normals[j, k, 1]
+        extent = max(nearby, float(store.extents[j, k]))
+        if across * across < limit and d - across * across < extent * extent:
+            best, chosen = d, k
+    return chosen
+
+
+@merged
+def _add_point(
+    store: SurfacePoints,
+    j: int,
+    chosen: int,
+    point: tuple[float, float, float, float],
+    weight: float,
+    system: NDArray[np.float64],
+) -> None:
+    """Add how far a point (x, y and how it moves when its scan turns) is from the surface of a beam of scan ``j``."""
+    x, y, turning_x, turning_y = point
+    qx, qy = float(store.normals[j, chosen, 0]), float(store.normals[j, chosen, 1])
+    off = qx * (x - store.points[j, chosen, 0]) + qy * (y - store.points[j, chosen, 1])
+    turning = qx * turning_x + qy * turning_y
+    scaled = off / SPREAD
+    w = weight * store.weights[j, chosen] / (1.0 + scaled * scaled) / (SPREAD * SPREAD)
+    system[0] += w * qx * qx
+    system[1] += w * qx * qy
+    system[2] += w * qx * turning
+    system[3] += w * qy * qy
+    system[4] += w * qy * turning
+    system[5] += w * turning * turning
+    system[6] += w * qx * off
+    system[7] += w * qy * off
+    system[8] += w * turning * off
+    system[9] += off * off
+    system[10] += 1.0
 
 
 @leaf
