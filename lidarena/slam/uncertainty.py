@@ -102,6 +102,20 @@ def pose_moments(
         covariance[k, k] += COVARIANCE_FLOOR[k]
 
 
+def predictive_scale(weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """What the covariance of weighted poses (…, N) is to be multiplied by to be that of the pose itself, (…,).
+
+    n poses drawn from a Gaussian scatter a little less around their own mean than around its middle, the mean is off
+    the middle, and where the poses happen to lie close together the error looks large beside them. The pose that they
+    stand for is distributed around their mean as Student's t, whose covariance is (n + 1) / (n - 5) times theirs in
+    three dimensions (Gelman et al. 2013, section 3.6). For weighted poses n is N_eff; from less than 6 the tails are so
+    heavy that there is no covariance, and n + 1 is taken.
+    """
+    n = 1.0 / np.sum(weights * weights, axis=-1)
+    scale: NDArray[np.float64] = (n + 1.0) / np.maximum(n - 5.0, 1.0)
+    return scale
+
+
 @leaf
 def compound_covariance(
     motion: NDArray[np.float64],

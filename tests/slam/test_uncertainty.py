@@ -11,6 +11,7 @@ from lidarena.slam.uncertainty import (
     d_optimality,
     e_optimality,
     pose_moments,
+    predictive_scale,
     score_entropy,
     weight_entropy,
 )
@@ -60,3 +61,21 @@ def test_coinciding_particles_are_certain_but_not_singular() -> None:
     pose_moments(np.tile([1.0, 2.0, 3.0], (30, 1)), np.full(30, 1 / 30), mean, covariance)
     assert covariance == pytest.approx(np.diag(COVARIANCE_FLOOR))
     assert d_optimality(covariance) > 0
+
+
+@pytest.mark.parametrize("count", [12, 30])
+def test_the_pose_is_as_far_from_drawn_poses_as_their_scaled_covariance_says(count: int) -> None:
+    """The error's NEES is 3 in the mean where truth and poses are drawn from one Gaussian, and more without scaling."""
+    rng, weights, nees = np.random.default_rng(0), np.full(count, 1.0 / count), []
+    for _ in range(4000):
+        poses, truth = 0.01 * rng.normal(size=(count, 3)), 0.01 * rng.normal(size=3)
+        mean, covariance = np.zeros(3), np.zeros((3, 3))
+        pose_moments(poses, weights, mean, covariance)
+        nees.append((truth - mean) @ np.linalg.solve(covariance - np.diag(COVARIANCE_FLOOR), truth - mean))
+    assert np.mean(nees) > 3.6
+    assert np.mean(nees) / predictive_scale(weights) == pytest.approx(3.0, abs=0.3)
+
+
+def test_few_poses_say_little_and_a_single_one_nothing_false() -> None:
+    weights = np.array([[0.25, 0.25, 0.25, 0.25], [1.0, 0.0, 0.0, 0.0]])
+    np.testing.assert_allclose(predictive_scale(weights), [5.0, 2.0])

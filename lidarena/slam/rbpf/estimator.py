@@ -16,6 +16,7 @@ from lidarena.slam.rbpf.particle_filter import ParticleFilters
 from lidarena.slam.rbpf.particle_filter_state import FilterParameters, FilterState, Scratch
 from lidarena.slam.rbpf.scan_points import points_for
 from lidarena.slam.readings import ScanGeometry, Share, next_world, reading_of
+from lidarena.slam.uncertainty import COVARIANCE_FLOOR, predictive_scale
 from lidarena.world.sensors import Sensing, sense
 
 MOST_PARTICLES = 1000
@@ -70,9 +71,15 @@ class ParticleFilterEstimator(BatchEstimator):
         return np.clip(self.filters.state.criteria[:, 1] / most, 0.0, 1.0)
 
     def infos(self) -> dict[str, NDArray[Any]]:
-        """``entropy`` of the weights [nat], ``n_eff``, and ``entropy_gmapping`` (``uncertainty.score_entropy``)."""
-        criteria = self.filters.state.criteria
-        return {name: criteria[:, k].copy() for k, name in enumerate(("entropy", "n_eff", "entropy_gmapping"), 1)}
+        """What only a filter can tell.
+
+        ``covariance`` of the pose given the particles, which is more than theirs (``uncertainty.predictive_scale``);
+        ``entropy`` of the weights [nat], ``n_eff``, and ``entropy_gmapping`` (``uncertainty.score_entropy``).
+        """
+        criteria, floor = self.filters.state.criteria, np.diag(COVARIANCE_FLOOR)
+        scale = predictive_scale(self.filters.state.weights)[:, None, None]
+        told = {name: criteria[:, k].copy() for k, name in enumerate(("entropy", "n_eff", "entropy_gmapping"), 1)}
+        return {"covariance": scale * (self.covariance - floor) + floor} | told
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """The maps, the particles' likelihood fields, and the filters."""

@@ -17,7 +17,7 @@ def test_the_filters_arrays_are_what_everybody_reads() -> None:
 def test_equal_weights_have_the_largest_entropy() -> None:
     estimator = ParticleFilterEstimator(settings_for(1), particles=4)
     start_all(estimator)
-    assert set(estimator.infos()) == {"entropy", "n_eff", "entropy_gmapping"}
+    assert set(estimator.infos()) == {"covariance", "entropy", "n_eff", "entropy_gmapping"}
     estimator.filters.state.criteria[0, 1] = np.log(4)
     assert estimator.scaled_entropy().tolist() == [1.0]
 
