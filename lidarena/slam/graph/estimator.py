@@ -9,7 +9,7 @@ from lidarena.base.errors import EstimatorError
 from lidarena.base.keyword_checks import check_range
 from lidarena.slam.estimator import MapGrid, ScanSpec
 from lidarena.slam.graph.adjustment import adjusted
-from lidarena.slam.graph.mapper import Mapper
+from lidarena.slam.graph.mapper import MapParameters, Mapper
 from lidarena.slam.graph.optimization import Edges, marginal
 from lidarena.slam.graph.traced_keyframes import TracedKeyframes
 from lidarena.slam.planar import between, compose, wrapped
@@ -62,7 +62,7 @@ class GraphEstimator:
 
     def reset(self, pose: Floats, grid: MapGrid) -> None:
         """Begin an episode."""
-        self._mapper = Mapper(self._angles, self._lidar.max_range)
+        self._mapper = Mapper(self._angles, self._lidar.max_range, parameters=MapParameters(visits=None))
         self._odometry, self.pose = pose.copy(), pose.copy()
         self._traced = TracedKeyframes(grid, self._lidar)
         self.map = self._traced.occupancy

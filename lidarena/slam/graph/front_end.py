@@ -84,6 +84,8 @@ class FrontEnd:
         self.grid = empty_grid()
         self.drawn = 0
         self.odometry, self.system = np.zeros(3), np.zeros(16)
+        self._slots, self._free = np.zeros(256, np.int64), list[int]()
+        self._next = 0
 
     @property
     def count(self) -> int:
@@ -94,10 +96,35 @@ class FrontEnd:
         """(3,) pose of a keyframe, by its place in their order."""
         return self.poses[self.keyframes[keyframe]]
 
-    def viewed(self, poses: Floats) -> Floats:
-        """(K, 2) the middle of what each of the first keyframes saw, with the keyframes at ``poses`` (K, 3)."""
-        views = np.array(self.views[: len(poses)]).reshape(-1, 2)
-        return compose(poses, np.concatenate([views, np.zeros((len(views), 1))], axis=1))[:, :2]
+    def slots(self, keyframes: NDArray[np.int64]) -> NDArray[np.int64]:
+        """Where the scans of keyframes are in the store."""
+        return self._slots[keyframes]
+
+    def slot(self, keyframe: int) -> int:
+        """Where the scan of a keyframe is in the store."""
+        return int(self._slots[keyframe])
+
+    def release(self, keyframe: int) -> None:
+        """Give the room of a keyframe that nothing is compared with any more to a later one."""
+        self._free.append(self.slot(keyframe))
+
+    def spare_slot(self) -> int:
+        """A slot of the store that holds no keyframe; the next scan goes there."""
+        if self._free:
+            return self._free[-1]
+        if self._next == len(self.store.points):
+            self.store = enlarged_points(self.store)
+        return self._next
+
+    def _occupy(self, slot: int) -> None:
+        """The scan in a slot has become the last keyframe."""
+        if self._free:
+            self._free.pop()
+        else:
+            self._next += 1
+        if len(self.keyframes) > len(self._slots):
+            self._slots = np.concatenate([self._slots, np.zeros_like(self._slots)])
+        self._slots[len(self.keyframes) - 1] = slot
 
     def add(self, odometry: Floats, ranges: NDArray[np.float32], unsure: bool = False) -> bool:
         """Match a scan.
@@ -110,9 +137,7 @@ class FrontEnd:
         Returns:
             Whether it has become a keyframe.
         """
-        if len(self.keyframes) == len(self.store.points):
-            self.store = enlarged_points(self.store)
-        slot = len(self.keyframes)
+        slot = self.spare_slot()
         points = enter_scan(self.store, slot, ranges, self.fan, self.parameters.usable_range)
         self.system[:] = 0.0
         if not self.poses:
@@ -125,7 +150,7 @@ class FrontEnd:
         self.scores.append(score)
         self.shares.append(float(self.system[10] / max(self.system[11], 1.0)))
         self.held.append(score < self.parameters.lost_score)
-        return self._keep(points)
+        return self._keep(slot, points)
 
     def _told(self, odometry: Floats, unsure: bool) -> Floats:
         """The motion since the last scan: by the wheels, or going on as before."""
@@ -167,7 +192,7 @@ class FrontEnd:
         pose, poses = found.copy(), np.array([self.node(int(o)) for o in others])
         prior = np.array([4.0, 4.0, 1.0]) / spread[[0, 0, 1]] ** 2
         stride = max(self.fan.beams // _ALIGNED, 1)
-        align(self.store, self.fan, slot, others, poses, pose, prior, _ROUNDS, stride, self.system)
+        align(self.store, self.fan, slot, self.slots(others), poses, pose, prior, _ROUNDS, stride, self.system)
         moved = between(found, pose)
         strayed = math.hypot(moved[0], moved[1]) > 0.3 or abs(moved[2]) > 0.2
         return found.copy() if strayed else pose, float(self.system[10] / max(self.system[11], 1.0))
@@ -188,7 +213,7 @@ class FrontEnd:
         order = np.argsort(cost, kind="stable")[: self.parameters.references]
         return np.asarray(recent[np.sort(order)], np.int64)
 
-    def _keep(self, points: int) -> bool:
+    def _keep(self, slot: int, points: int) -> bool:
         """Make the last scan a keyframe if it is far enough from the keyframe before."""
         if self.keyframes:
             motion = between(self.node(-1), self.poses[-1])
@@ -196,10 +221,11 @@ class FrontEnd:
             if points < _FEWEST_POINTS or (near and abs(motion[2]) < self.parameters.keyframe_turn):
                 return False
         self.keyframes.append(len(self.poses) - 1)
+        self._occupy(slot)
         self.information.append(self.system[:6].copy())
-        seen = self.store.points[len(self.views)][self.store.weights[len(self.views)] > 0.0]
+        seen = self.store.points[slot][self.store.weights[slot] > 0.0]
         self.views.append(np.asarray(seen.mean(axis=0), np.float64) if len(seen) else np.zeros(2))
-        draw_scan(self.grid, self.store, len(self.keyframes) - 1, self.poses[-1], 1)
+        draw_scan(self.grid, self.store, slot, self.poses[-1], 1)
         if len(self.keyframes) - self.drawn > _DRAWN:
             self._forget()
         return True
@@ -209,10 +235,15 @@ class FrontEnd:
         last = len(self.keyframes)
         middle = (self.drawn + last) // 2
         for old in range(self.drawn, middle):
-            draw_scan(self.grid, self.store, old, self.node(old), -1)
+            draw_scan(self.grid, self.store, self.slot(old), self.node(old), -1)
         for kept in range(middle, last):
-            draw_scan(self.grid, self.store, kept, self.node(kept), 1)
+            draw_scan(self.grid, self.store, self.slot(kept), self.node(kept), 1)
         self.drawn = middle
+
+
+def viewed(poses: Floats, views: Floats) -> Floats:
+    """(K, 2) the middle of what was seen from poses (K, 3), from ``views`` (K, 2) in the laser's frame."""
+    return compose(poses, np.concatenate([views, np.zeros((len(views), 1))], axis=1))[:, :2]
 
 
 def _believed(motion: Floats, unsure: bool) -> tuple[Floats, Floats]:

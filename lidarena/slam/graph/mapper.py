@@ -7,8 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import EstimatorError
-from lidarena.slam.graph.adjustment import adjusted, torn_places
+from lidarena.base.keyword_checks import check_range
+from lidarena.slam.graph.adjustment import Compared, adjusted, torn_places
 from lidarena.slam.graph.back_end import BackEnd
+from lidarena.slam.graph.final_matching import match_with_nodes
 from lidarena.slam.graph.front_end import FrontEnd, FrontEndParameters
 from lidarena.slam.graph.surface_points import BeamFan
 from lidarena.slam.planar import between, compose, inverse, wrapped
@@ -29,9 +31,19 @@ class MapParameters:
 
     Attributes:
         front_end: How scans are matched.
+        visits: Keyframes of places that were visited so often before are dropped from the graph, which so stops
+            growing once a building is known; None keeps all.
+
+    Raises:
+        ConfigError: A number of visits below 1.
     """
 
     front_end: FrontEndParameters = field(default_factory=FrontEndParameters)
+    visits: int | None = 4
+
+    def __post_init__(self) -> None:
+        if self.visits is not None:
+            check_range("visits", self.visits, 1, 1000, whole=True)
 
 
 @dataclass(frozen=True)
@@ -118,7 +130,8 @@ class Mapper:
         self.parameters = parameters or MapParameters()
         fan = BeamFan(float(angles[0]), float(steps.mean()), len(angles))
         self.front = FrontEnd(fan, self.parameters.front_end)
-        self.back = BackEnd(self.front)
+        self.back = BackEnd(self.front, self.parameters.visits)
+        self._scans: list[NDArray[np.float32]] = []
         self.max_range, self.mount = max_range, np.asarray(mount, np.float64)
         self.pose = np.zeros(3)
 
@@ -143,6 +156,7 @@ class Mapper:
         if odometry.shape != (3,) or not np.isfinite(odometry).all():
             raise EstimatorError(f"the odometry is {odometry_pose}; three finite numbers x, y, theta are needed")
         scan = np.where((scan > 0.0) & (scan < self.max_range * (1.0 - 1e-4)), scan, np.float32(0.0)).astype(np.float32)
+        self._scans.append(scan)
         if self.front.add(compose(odometry, self.mount), scan, unsure):
             self.back.extend()
         self.pose = compose(self.back.corrected(self.front.poses[-1]), inverse(self.mount))
@@ -153,12 +167,36 @@ class Mapper:
         front = self.front
         if not front.keyframes:
             return _unmapped(front, self.mount)
-        scans = np.array(front.keyframes, np.int64)
-        nodes, edges = adjusted(front, self.back.fitted())
-        poses = spread_over(front, scans, nodes)
-        loops, torn = _checked_loops(self.back, scans, nodes), torn_places(front, nodes)
+        columns = self.back.nodes.columns
+        keyframes, sources = np.array(front.keyframes, np.int64), self.back.way_edges().pairs[:, 0]
+        compared = Compared(columns.numbers, columns.views, sources)
+        nodes, edges = adjusted(front, self.back.fitted(), compared=compared)
+        scans = keyframes[columns.numbers]
+        poses = spread_over(front, keyframes, _with_dropped(self.back, nodes, len(keyframes)))
+        others = np.setdiff1d(np.arange(front.count), scans)
+        poses[others] = self._matched(poses[others], others, nodes, compared)
+        loops, torn = _checked_loops(self.back, keyframes, poses), torn_places(front, nodes, compared)
         graph = PoseGraph(nodes, scans, edges.pairs, edges.motions, edges.information)
         return MapResult(compose(poses, inverse(self.mount)), loops, graph, _doubts(front, loops, scans[torn]))
+
+    def _matched(self, poses: Floats, scans: NDArray[np.int64], nodes: Floats, compared: Compared) -> Floats:
+        """(M, 3) poses of scans that are no nodes, once they are matched with the nodes."""
+        front, slots = self.front, self.front.slots(compared.numbers)
+        moved, ranges = poses.copy(), np.array([self._scans[s] for s in scans]).reshape(-1, front.fan.beams)
+        reach = front.parameters.usable_range
+        match_with_nodes(front.store, front.fan, front.spare_slot(), ranges, reach, moved, nodes, slots)
+        moved[:, 2] = wrapped(moved[:, 2])
+        return moved
+
+
+def _with_dropped(back: BackEnd, nodes: Floats, keyframes: int) -> Floats:
+    """(K, 3) poses of all keyframes from those of the nodes (N, 3)."""
+    poses = np.zeros((keyframes, 3))
+    poses[back.nodes.columns.numbers] = nodes
+    if back.ties:
+        dropped, to = np.array([tie[:2] for tie in back.ties]).T
+        poses[dropped] = compose(poses[to], np.array([tie[2] for tie in back.ties]))
+    return poses
 
 
 def spread_over(front: FrontEnd, scans: NDArray[np.int64], nodes: Floats) -> Floats:
@@ -185,14 +223,14 @@ def _unmapped(front: FrontEnd, mount: Floats) -> MapResult:
     return MapResult(compose(poses, inverse(mount)), [], graph, doubts)
 
 
-def _checked_loops(back: BackEnd, scans: NDArray[np.int64], nodes: Floats) -> list[Loop]:
-    """The loops with how far the finished map disagrees."""
+def _checked_loops(back: BackEnd, keyframes: NDArray[np.int64], poses: Floats) -> list[Loop]:
+    """The loops with how far the finished map, with the poses (S, 3) of all scans, disagrees."""
     loops = []
     for one in back.loops:
-        error = between(one.motion, between(nodes[one.earlier], nodes[one.later]))
+        later, earlier = int(keyframes[one.later]), int(keyframes[one.earlier])
+        error = between(one.motion, between(poses[earlier], poses[later]))
         residual = float(np.hypot(error[0], error[1]))
         kept = residual < _CONTRADICTED and abs(float(error[2])) < _CONTRADICTED
-        later, earlier = int(scans[one.later]), int(scans[one.earlier])
         loops.append(Loop(later, earlier, one.motion, residual, kept))
     return loops
 

@@ -1,6 +1,6 @@
 """Sparse Gauss-Newton over poses that are tied to each other by measured motions (Grisetti et al. 2010)."""
 
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -10,6 +10,9 @@ from scipy.sparse.linalg import SuperLU, splu
 from lidarena.slam.planar import between, wrapped
 
 Floats = NDArray[np.float64]
+
+_STRAINED = 6.0
+"""Squared Mahalanobis distance from which on an edge is strained."""
 
 
 class Edges(NamedTuple):
@@ -49,11 +52,11 @@ def belief(poses: Floats, edges: Edges) -> Floats:
     return believed
 
 
-def optimized(poses: Floats, edges: Edges, rounds: int = 5) -> Floats:
-    """Move poses (K, 3) to where the edges fit best; the first stays where it is."""
+def optimized(poses: Floats, edges: Edges, rounds: int = 5, held: int = 1) -> Floats:
+    """Move poses (K, 3) to where the edges fit best; the first, or so many of them, stay where they are."""
     poses = poses.copy()
     for _ in range(rounds):
-        step = _gauss_newton_step(poses, edges)
+        step = _gauss_newton_step(poses, edges, held)
         poses += step
         if np.abs(step).max() < 1e-5:
             break
@@ -61,9 +64,29 @@ def optimized(poses: Floats, edges: Edges, rounds: int = 5) -> Floats:
     return poses
 
 
-def _gauss_newton_step(poses: Floats, edges: Edges) -> Floats:
+def optimized_end(poses: Floats, edges: Edges, first: int, rounds: int = 3) -> Floats | None:
+    """Move the poses from ``first`` on alone, in a time that does not depend on how many stand before.
+
+    Returns:
+        (K, 3) poses; None where an edge is strained by that, so that the others must move, too.
+    """
+    touching: list[Any] = [each[(edges.pairs >= first).any(axis=1)] for each in edges]
+    part = Edges(*touching)
+    touched = np.unique(part.pairs[part.pairs < first])
+    used = np.concatenate([touched, np.arange(first, len(poses))])
+    part = part._replace(pairs=np.searchsorted(used, part.pairs))
+    end = optimized(poses[used], part, rounds, len(touched))
+    error = residuals(end, part)
+    if np.einsum("ei,eij,ej->e", error, part.information, error).max() > _STRAINED:
+        return None
+    moved = poses.copy()
+    moved[first:] = end[len(touched) :]
+    return moved
+
+
+def _gauss_newton_step(poses: Floats, edges: Edges, held: int) -> Floats:
     """(K, 3) the step that the linearised edges ask for."""
-    matrix, gradient = normal_equations(poses, edges)
+    matrix, gradient = normal_equations(poses, edges, held)
     step: Floats = _factorized(matrix).solve(-gradient.ravel()).reshape(-1, 3)
     return step
 
@@ -81,8 +104,8 @@ def _factorized(matrix: csc_matrix) -> SuperLU:
     return splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
 
 
-def normal_equations(poses: Floats, edges: Edges) -> tuple[csc_matrix, Floats]:
-    """Information matrix (3 K, 3 K) of poses that edges tie to each other and to the first, and gradient (K, 3)."""
+def normal_equations(poses: Floats, edges: Edges, held: int = 1) -> tuple[csc_matrix, Floats]:
+    """Information matrix (3 K, 3 K) of poses that edges tie to each other and to those held, and gradient (K, 3)."""
     i, j = edges.pairs[:, 0], edges.pairs[:, 1]
     error, moved = residuals(poses, edges), between(poses[i], poses[j])
     information = edges.information * belief(poses, edges)[:, None, None]
@@ -101,10 +124,10 @@ def normal_equations(poses: Floats, edges: Edges) -> tuple[csc_matrix, Floats]:
     )
     columns = np.concatenate([np.broadcast_to(3 * b[:, None, None] + np.arange(3), m.shape) for _, b, m in blocks])
     values, size = np.concatenate([m for _, _, m in blocks]), 3 * len(poses)
-    anchor = np.arange(3)
+    anchor = np.arange(3 * held)
     matrix = coo_matrix(
         (
-            np.concatenate([values.ravel(), np.full(3, 1e9), np.full(size, 1e-6)]),
+            np.concatenate([values.ravel(), np.full(3 * held, 1e9), np.full(size, 1e-6)]),
             (
                 np.concatenate([rows.ravel(), anchor, np.arange(size)]),
                 np.concatenate([columns.ravel(), anchor, np.arange(size)]),

@@ -15,8 +15,8 @@ Floats = NDArray[np.float64]
 _TURN, _WAY = 0.25, 0.3
 """Motions are looked at that turn by so much, at least, over so much way, at most [rad, m]."""
 _FEWEST = 40
-_SMALLEST = 0.02
-"""Mounts nearer to the robot's centre are not questioned [m]."""
+_SMALLEST = 0.03
+"""Mounts nearer to the robot's centre are not questioned [m]: castors shift what is measured by so much."""
 _CLEARLY = 3.0
 """The wrong side must be so many times farther from what is measured than the right one."""
 

@@ -3,7 +3,7 @@
 import numpy as np
 
 from lidarena.slam.graph.back_end import BackEnd
-from lidarena.slam.graph.mapper import Mapper
+from lidarena.slam.graph.mapper import MapParameters, Mapper
 from lidarena.slam.planar import between
 from tests.slam.drive import ring
 from tests.slam.logs.recorded import LAP, record, way
@@ -41,5 +41,20 @@ def test_without_keyframes_nothing_is_corrected() -> None:
 
 def test_a_step_is_known_as_well_as_what_was_seen_holds_it() -> None:
     back = MAPPER.back
-    deviations = np.array([np.sqrt(np.diag(np.linalg.inv(each))) for each in back._information])
+    deviations = np.array([np.sqrt(np.diag(np.linalg.inv(each))) for each in back.way_edges().information])
     assert (deviations[:, :2] > 0.005).all() and np.median(deviations[:, :2]) < 0.03
+
+
+def test_the_graph_of_a_known_building_stops_growing() -> None:
+    truth = way([*LAP[:4]] * 5)
+    log = record(ring(), truth, seed=3, drift=1.0)
+    mapper, nodes = Mapper(log.angles, log.max_range, parameters=MapParameters(visits=1)), []
+    for n, at in enumerate(log.scan_readings):
+        mapper.add(log.times[at], log.odometry[at], log.ranges[n])
+        nodes.append(mapper.back.nodes.count)
+    fifth = len(nodes) // 5
+    assert nodes[-1] - nodes[3 * fifth] < 0.2 * nodes[fifth]
+    assert mapper.front.store.points.shape[0] == 256 < len(mapper.front.keyframes)
+    truth, poses = truth[log.scan_readings], mapper.finish().poses
+    error = between(between(truth[0], truth), between(poses[0], poses))
+    assert np.hypot(error[:, 0], error[:, 1]).max() < 0.06

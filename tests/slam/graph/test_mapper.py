@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from lidarena.base.errors import EstimatorError
-from lidarena.slam.graph.mapper import Mapper
+from lidarena.base.errors import ConfigError, EstimatorError
+from lidarena.slam.graph.mapper import MapParameters, Mapper
 from lidarena.slam.planar import between
 from tests.slam.drive import ring
 from tests.slam.logs.recorded import LAP, record, way
@@ -57,3 +57,8 @@ def test_scans_without_returns_follow_the_wheels() -> None:
         pose = mapper.add(0.1 * k, np.array([0.1 * k, 0.0, 0.0]), np.full(180, ranges[k], np.float32))
     np.testing.assert_allclose(pose, [0.4, 0.0, 0.0])
     assert len(mapper.finish().poses) == 5
+
+
+def test_places_are_known_after_one_visit_at_the_earliest() -> None:
+    with pytest.raises(ConfigError, match="visits"):
+        MapParameters(visits=0)

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from lidarena.slam.graph.optimization import Edges, belief, joined, marginal, optimized, residuals
+from lidarena.slam.graph.optimization import Edges, belief, joined, marginal, optimized, optimized_end, residuals
 from lidarena.slam.planar import between
 
 SQUARE = np.array(
@@ -52,3 +52,18 @@ def test_a_loop_makes_the_far_end_more_certain() -> None:
     loop = edges_of(SQUARE, [(0, 3)])
     open_end, closed = marginal(SQUARE, chain, 3), marginal(SQUARE, joined([chain, loop]), 3)
     assert np.linalg.eigvalsh(open_end - closed).min() > 0.0
+
+
+def test_the_end_alone_is_moved_where_that_is_enough() -> None:
+    wrong = SQUARE.copy()
+    wrong[3:] += (0.05, -0.03, 0.02)
+    found = optimized_end(wrong, CHAIN, 3, 10)
+    assert found is not None
+    np.testing.assert_allclose(found, SQUARE, atol=1e-4)
+    np.testing.assert_array_equal(found[:3], SQUARE[:3])
+
+
+def test_an_end_that_cannot_meet_its_edges_is_told() -> None:
+    wrong = SQUARE.copy()
+    wrong[1:3] += (2.0, 0.0, 0.0)
+    assert optimized_end(wrong, CHAIN, 3) is None
