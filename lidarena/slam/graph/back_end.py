@@ -1,6 +1,7 @@
 """The back end: loops are searched on the way, verified, and all keyframes moved to where everything fits."""
 
 from dataclasses import dataclass, replace
+from itertools import takewhile
 
 import numpy as np
 from numpy.typing import NDArray
@@ -29,6 +30,9 @@ _INDEPENDENT = 0.3
 """Share of the points of a match that count as independent."""
 _END = 60
 """Nodes at the end of the way that a loop moves by themselves, and of which none is dropped."""
+_SELDOM = 50.0
+"""Keyframes from one moving of all nodes to the next, at least: their number over this, so that a scan's share of the
+time does not grow with the map."""
 _FARTHEST = 200.0
 """Ways along the graph beyond this make no place more uncertain [m]."""
 _UPPER = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
@@ -63,7 +67,7 @@ class BackEnd:
         self.front, self.visits, self.grid = front, visits, empty_grid()
         self.loops, self.nodes, self.ties = list[FoundLoop](), GraphNodes(), list[tuple[int, int, Floats]]()
         self._tied: list[FoundLoop] = []
-        self._keyframes, self._decided = 0, 0
+        self._keyframes, self._decided, self._moved_all = 0, 0, 0
 
     @property
     def poses(self) -> Floats:
@@ -127,9 +131,9 @@ class BackEnd:
     def _close(self) -> None:
         """Move the nodes to where the loops just found are met: the last ones alone, if that is enough."""
         poses, edges = self.poses, self._edges()
-        moved = optimized_end(poses, edges, max(self.nodes.count - _END, 1), 3)
-        if moved is None:
-            moved = optimized(poses, edges, 4)
+        moved, strained = optimized_end(poses, edges, max(self.nodes.count - _END, 1), 3)
+        if strained and self._keyframes - self._moved_all > self.nodes.count / _SELDOM:
+            moved, self._moved_all = optimized(poses, edges, 4, settled=1e-3), self._keyframes
         poses[:] = moved
 
     def _unclosed(self, n: int) -> Floats:
@@ -146,7 +150,8 @@ class BackEnd:
         """Drop nodes that have left the end and stand where earlier visits have seen enough."""
         nodes, start = self.nodes, self._decided
         numbers = nodes.columns.numbers
-        later = np.array([one.later for one in self._tied if _met(one, nodes)], np.int64)
+        recent = takewhile(lambda one: one.later >= numbers[start] - 2 * _CHUNK, reversed(self._tied))
+        later = np.array([one.later for one in recent if _met(one, nodes)], np.int64)
         places = []
         for place in range(start, nodes.count - _END):
             closed = len(later) > 0 and np.abs(later - numbers[place]).min() <= 2 * _CHUNK

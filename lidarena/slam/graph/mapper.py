@@ -39,7 +39,7 @@ class MapParameters:
     """
 
     front_end: FrontEndParameters = field(default_factory=FrontEndParameters)
-    visits: int | None = 4
+    visits: int | None = 2
 
     def __post_init__(self) -> None:
         if self.visits is not None:

@@ -11,8 +11,8 @@ from lidarena.slam.planar import between, wrapped
 
 Floats = NDArray[np.float64]
 
-_STRAINED = 6.0
-"""Squared Mahalanobis distance from which on an edge is strained."""
+_STRAINED = 20.0, 6.0
+"""Squared Mahalanobis distance from which on an edge of the way, of which there are many, and a loop are strained."""
 
 
 class Edges(NamedTuple):
@@ -43,32 +43,45 @@ def residuals(poses: Floats, edges: Edges) -> Floats:
     return error
 
 
+def _squared(poses: Floats, edges: Edges) -> Floats:
+    """(E,) squared Mahalanobis distances of the poses (K, 3) from what was measured."""
+    error = residuals(poses, edges)
+    squared: Floats = np.einsum("ei,eij,ej->e", error, edges.information, error)
+    return squared
+
+
 def belief(poses: Floats, edges: Edges) -> Floats:
     """(E,) how far each edge is believed, 0 to 1."""
-    error = residuals(poses, edges)
-    squared = np.einsum("ei,eij,ej->e", error, edges.information, error)
-    share = 1.0 / (1.0 + squared / edges.robust)
+    share = 1.0 / (1.0 + _squared(poses, edges) / edges.robust)
     believed: Floats = share * share
     return believed
 
 
-def optimized(poses: Floats, edges: Edges, rounds: int = 5, held: int = 1) -> Floats:
-    """Move poses (K, 3) to where the edges fit best; the first, or so many of them, stay where they are."""
+def optimized(poses: Floats, edges: Edges, rounds: int = 5, held: int = 1, settled: float = 1e-5) -> Floats:
+    """Move poses (K, 3) to where the edges fit best.
+
+    Args:
+        poses: Where they are.
+        edges: What was measured.
+        rounds: Steps at most.
+        held: So many of the first stay where they are.
+        settled: Steps that move no pose by more end the search [m, rad].
+    """
     poses = poses.copy()
     for _ in range(rounds):
         step = _gauss_newton_step(poses, edges, held)
         poses += step
-        if np.abs(step).max() < 1e-5:
+        if np.abs(step).max() < settled:
             break
     poses[:, 2] = wrapped(poses[:, 2])
     return poses
 
 
-def optimized_end(poses: Floats, edges: Edges, first: int, rounds: int = 3) -> Floats | None:
-    """Move the poses from ``first`` on alone, in a time that does not depend on how many stand before.
+def optimized_end(poses: Floats, edges: Edges, first: int, rounds: int = 3) -> tuple[Floats, bool]:
+    """Move the poses from ``first`` on alone, in a time that hardly depends on how many stand before.
 
     Returns:
-        (K, 3) poses; None where an edge is strained by that, so that the others must move, too.
+        (K, 3) poses, and whether the last one's loops or the way are strained, so that the others should move, too.
     """
     touching: list[Any] = [each[(edges.pairs >= first).any(axis=1)] for each in edges]
     part = Edges(*touching)
@@ -76,12 +89,12 @@ def optimized_end(poses: Floats, edges: Edges, first: int, rounds: int = 3) -> F
     used = np.concatenate([touched, np.arange(first, len(poses))])
     part = part._replace(pairs=np.searchsorted(used, part.pairs))
     end = optimized(poses[used], part, rounds, len(touched))
-    error = residuals(end, part)
-    if np.einsum("ei,eij,ej->e", error, part.information, error).max() > _STRAINED:
-        return None
+    way = np.isinf(part.robust)
+    counts = way | (part.pairs[:, 1] == len(used) - 1)
+    strained = bool(np.any(counts & (_squared(end, part) > np.where(way, *_STRAINED))))
     moved = poses.copy()
     moved[first:] = end[len(touched) :]
-    return moved
+    return moved, strained
 
 
 def _gauss_newton_step(poses: Floats, edges: Edges, held: int) -> Floats:
