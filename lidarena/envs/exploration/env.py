@@ -109,8 +109,10 @@ class ExplorationEnv(SingleWorld):
 
     ## Info
 
-    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3), ``d_optimality``; with ``slam="rbpf"`` ``entropy`` of the
-    weights [nat], ``n_eff``, ``entropy_gmapping`` (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``);
+    ``completeness``, ``pose`` (3,), ``covariance`` (3, 3) of it, ``d_optimality``; with ``slam="rbpf"`` the last is of
+    the particles' own covariance, as in DA-SLAM, and the one before that of the pose, which is larger by a quarter to a
+    half (``uncertainty.predictive_scale``); ``entropy`` of the weights [nat], ``n_eff``, ``entropy_gmapping``
+    (DA-SLAM's "average uncertainty", see ``uncertainty.score_entropy``);
     ``path_length`` of the odometry [m], ``time`` [s], ``collision``, ``success`` (completeness reached ``stop_at``),
     ``radius`` of the robot [m], ``scan`` (beams,) measured ranges [m], ``odometry_pose`` (3,), ``reward_terms``;
     ``map`` (rows, columns) int8 with -1 unknown, 0 free, 100 occupied (in a batch a view that later steps change),
