@@ -18,10 +18,11 @@ PROMISED = {
     "own_map": r"hall 2 with \d pillars: [5-9]\d% mapped",
     "own_policy": r"room seeker: [3-9]\d% of Env-1 mapped",
     "own_slam": r"frontier explored ([4-9]\d|100)%",
+    "ray_tune": r"best return",
     "rllib_ppo": r"iteration 2: .* return",
     "torchrl_ppo": r"mean return .*\na team's rewards",
 }
-OTHER_LIBRARIES = {"rllib_ppo": "ray", "torchrl_ppo": "torchrl"}
+OTHER_LIBRARIES = {"ray_tune": "tensorboardX", "rllib_ppo": "ormsgpack", "torchrl_ppo": "torchrl"}
 """What examples need beside what the package itself needs; tried by hand where it is not installed."""
 MOST_LINES = {"own_family": 60}
 """A family is an environment, its measures and its picture."""

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from lidarena.agents.learned_policy import LearnedPolicy
     from lidarena.agents.loading import load, ready
     from lidarena.agents.policy_file import save_policy
+    from lidarena.agents.seeds import train_seeds
     from lidarena.agents.shipped import pretrained
     from lidarena.agents.training import train
     from lidarena.agents.training_config import TrainingConfig
@@ -36,6 +37,7 @@ __all__ = [
     "ready",
     "save_policy",
     "train",
+    "train_seeds",
 ]
 
 _HOMES = {
@@ -51,6 +53,7 @@ _HOMES = {
     "ready": "lidarena.agents.loading",
     "save_policy": "lidarena.agents.policy_file",
     "train": "lidarena.agents.training",
+    "train_seeds": "lidarena.agents.seeds",
 }
 
 

@@ -12,6 +12,12 @@ from pathlib import Path
 from lidarena.base.files import unfinished_folders
 
 
+def available_cores() -> int:
+    """Return the number of cores that this process may use."""
+    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
+    return len(affinity(0)) if affinity else os.cpu_count() or 1
+
+
 def worker_pool(count: int, prepare: Callable[[], None] | None = None) -> ProcessPoolExecutor:
     """Return a pool of processes that end as soon as this one is gone, even if it was killed.
 

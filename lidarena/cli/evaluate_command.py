@@ -10,6 +10,7 @@ from rich.console import Console
 from lidarena.base.errors import LidarenaError
 from lidarena.base.yaml_config import load_config
 from lidarena.cli.config_names import find_config
+from lidarena.cli.engine_options import add_engine, engine_overrides
 from lidarena.cli.shell_completion import complete_names
 from lidarena.cli.standalone import run_alone
 
@@ -40,6 +41,7 @@ def run(options: argparse.Namespace) -> int:
         options.refuse("give one configuration, by its name or with --config FILE")
     overrides = [*options.set, *([f"out={json.dumps(options.out)}"] if options.out else [])]
     overrides += ["record=true"] if options.record else []
+    overrides += engine_overrides(options)
     try:
         return _compare(find_config("compare", options.config or options.name), overrides)
     except LidarenaError as refusal:
@@ -109,4 +111,5 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--out", metavar="DIR", help="folder of the results; over the file's own 'out'")
     record_help = "write the first episode of each policy as a rosbag 2 (MCAP) for ROS, into DIR/bags"
     parser.add_argument("--record", action="store_true", help=record_help)
+    add_engine(parser)
     parser.set_defaults(run=run, refuse=parser.error)

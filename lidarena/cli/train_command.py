@@ -5,12 +5,14 @@ import json
 import sys
 from typing import TYPE_CHECKING
 
-from lidarena.base.errors import LidarenaError
+from lidarena.base.errors import ConfigError, LidarenaError
 from lidarena.cli.config_names import find_config
+from lidarena.cli.engine_options import add_engine
 from lidarena.cli.shell_completion import complete_names
 from lidarena.cli.standalone import run_alone
 
 if TYPE_CHECKING:
+    from lidarena.agents.seeds import Engine
     from lidarena.agents.training_config import TrainingConfig
 
 _TEXT = "Train an agent from a YAML file, or go on with a training."
@@ -31,16 +33,13 @@ def run(options: argparse.Namespace) -> int:
     """Run a training; return 0, 2 for a refusal, 130 after Ctrl-C."""
     from lidarena import agents  # here, since it takes seconds to load PyTorch
 
-    if options.name and options.config:
-        options.refuse("give the configuration once, by its name or with --config")
+    _check(options)
     options.config = options.config or options.name
-    if not options.config and not options.resume:
-        options.refuse("give a configuration's name or --config FILE to start a training, or --resume DIR to go on")
-    if options.out and options.resume:
-        options.refuse("--out is for a new training; --resume goes on in its own folder")
     try:
         config = _config(options)
         print(_summary(config), flush=True)
+        if options.seeds is not None:
+            return _train_seeds(config, options)
         folder = agents.train(config, resume=options.resume, exact_out=bool(options.out))
     except LidarenaError as refusal:
         print(refusal, file=sys.stderr)
@@ -59,6 +58,43 @@ def run(options: argparse.Namespace) -> int:
     print(f"curve:    {folder}/progress.csv, or tensorboard --logdir {folder}")
     print(f"go on:    lidarena train --resume {folder} --set total_steps=N")
     return 0
+
+
+def _check(options: argparse.Namespace) -> None:
+    """Refuse options that do not go together."""
+    if options.name and options.config:
+        options.refuse("give the configuration once, by its name or with --config")
+    if not options.config and not options.name and not options.resume:
+        options.refuse("give a configuration's name or --config FILE to start a training, or --resume DIR to go on")
+    if options.seeds is not None and options.resume:
+        options.refuse("--seeds is for new trainings; --resume goes on with one")
+    if options.seeds is None and (options.engine or options.ray_address):
+        options.refuse("--engine and --ray-address spread the trainings of --seeds")
+    if options.out and options.resume:
+        options.refuse("--out is for a new training; --resume goes on in its own folder")
+
+
+def _train_seeds(config: "TrainingConfig", options: argparse.Namespace) -> int:
+    from lidarena import agents
+
+    engine: Engine = options.engine or "processes"
+    folders = agents.train_seeds(config, _seeds_of(options.seeds), engine, options.ray_address, print)
+    print(f"policies: {', '.join(map(str, folders))}")
+    return 0
+
+
+def _seeds_of(text: str) -> list[int]:
+    """Seeds as ``0..9`` or ``0,3,5``.
+
+    Raises:
+        ConfigError: Neither.
+    """
+    first, dots, last = text.partition("..")
+    parts = [first, last] if dots else text.split(",")
+    if not all(part.strip().isdecimal() for part in parts):
+        raise ConfigError(f"--seeds {text} is neither a range such as 0..9 nor a list such as 0,3,5")
+    numbers = [int(part) for part in parts]
+    return list(range(numbers[0], numbers[1] + 1)) if dots else numbers
 
 
 def _config(options: argparse.Namespace) -> "TrainingConfig":
@@ -107,4 +143,7 @@ def _add_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--resume", metavar="DIR", help="run folder of a training to go on with, from its last checkpoint"
     )
+    seeds_help = "train once with each, such as 0..9 or 0,3,5, into DIR/seed0, …; side by side on all cores"
+    parser.add_argument("--seeds", metavar="SEEDS", help=seeds_help)
+    add_engine(parser)
     parser.set_defaults(run=run, refuse=parser.error)

@@ -25,8 +25,9 @@ from lidarena.evaluation.results import (
     write_results,
     write_results_folder,
 )
-from lidarena.evaluation.runner import dry_run, list_tasks, run_tasks
+from lidarena.evaluation.runner import dry_run, run_tasks
 from lidarena.evaluation.tables import csv_text, latex_text, markdown_text
+from lidarena.evaluation.tasks import list_tasks
 
 
 @dataclass(frozen=True)
@@ -135,7 +136,8 @@ def _reference(policies: Sequence[PolicyEntry]) -> str:
 def _run(config: ComparisonConfig, folder: Path, console: Console) -> list[list[Cell]]:
     tasks = list_tasks(config, folder)
     with report_progress(len(tasks), console) as advance:
-        episodes = iter(run_tasks(tasks, config.workers, lambda task: advance(str(task))))
+        told = run_tasks(tasks, config.workers, lambda task: advance(str(task)), config.engine, config.ray_address)
+    episodes = iter(told)
     counts = Counter((task.env.label, task.policy.title) for task in tasks)
     return [
         [

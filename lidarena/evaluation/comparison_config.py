@@ -12,6 +12,7 @@ from lidarena.evaluation.map_folders import MapCase, MapFolder
 
 EVALUATION_KEYWORDS = ("expose_truth", "render_mode")
 """Keywords of the environments that the evaluation itself sets."""
+Engine = Literal["processes", "ray"]
 SHIPPED = "pretrained:"
 """What the names of shipped agents begin with."""
 
@@ -153,6 +154,10 @@ class ComparisonConfig(ConfigModel):
         record: Write the first episode of each as a rosbag 2 (MCAP) into ``bags``.
         out: Folder of the results.
         workers: Processes; one per core if left out.
+        engine: ``processes`` of this machine, or ``ray`` (``pip install 'lidarena[ray]'``) for a cluster, whose nodes
+            have this package, and read the same maps and agents. It changes no result, so it is not written down.
+        ray_address: Of the cluster, as ``ray.init`` takes it; ``RAY_ADDRESS`` if left out, and without that the cores
+            of this machine.
     """
 
     envs: list[Annotated[EnvEntry, _named("id")]] = Field(min_length=1)
@@ -166,6 +171,8 @@ class ComparisonConfig(ConfigModel):
     record: bool = False
     out: str = Field(default="results/comparison", min_length=1)
     workers: int | None = Field(default=None, ge=1, le=1024)
+    engine: Engine = Field(default="processes", exclude=True)
+    ray_address: str | None = Field(default=None, exclude=True)
 
     @model_validator(mode="after")
     def _labels_tell_entries_apart(self) -> Self:

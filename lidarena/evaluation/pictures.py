@@ -13,7 +13,7 @@ from lidarena.evaluation.episodes import Episode
 from lidarena.evaluation.palette import line_of
 from lidarena.evaluation.picture import Bounds, Picture, axis_titles
 from lidarena.evaluation.progress_curve import ProgressCurve, progress_band
-from lidarena.evaluation.runner import place_of
+from lidarena.evaluation.tasks import place_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -4,28 +4,29 @@ import os
 import signal
 import sys
 import traceback
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Generator, Iterator, Sequence
 from concurrent.futures import ProcessPoolExecutor, as_completed
 from concurrent.futures.process import BrokenProcessPool
-from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext
+from contextlib import AbstractContextManager, ExitStack, closing, contextmanager, nullcontext
 from dataclasses import dataclass, replace
 from functools import partial
-from pathlib import Path
 from typing import Any, NoReturn, TypeVar
 
 import cv2
 import numba
 
 from lidarena.base.errors import LidarenaError, MapError
-from lidarena.base.worker_processes import worker_pool
+from lidarena.base.ray_cluster import ClusterError
+from lidarena.base.worker_processes import available_cores, worker_pool
 from lidarena.baselines import Policy
 from lidarena.envs.compilation import announced_compilation, keep_quiet
 from lidarena.evaluation.bag_recorder import BagRecorder
-from lidarena.evaluation.comparison_config import ComparisonConfig, EnvEntry, PolicyEntry, file_name
+from lidarena.evaluation.comparison_config import ComparisonConfig, Engine
 from lidarena.evaluation.episodes import Episode, run_episode
-from lidarena.evaluation.map_folders import MapCase
 from lidarena.evaluation.participants import make_participants
+from lidarena.evaluation.ray_engine import cluster_outcomes
 from lidarena.evaluation.recording import Env
+from lidarena.evaluation.tasks import Task
 from lidarena.evaluation.videos import VideoRecorder
 
 DRY_RUN_STEPS = 30
@@ -47,37 +48,6 @@ class EpisodeError(RuntimeError):
 
 
 @dataclass(frozen=True)
-class Task:
-    """One episode to run.
-
-    Attributes:
-        env: The environment.
-        policy: The policy.
-        seed: Of the environment.
-        keep_picture: Keep what pictures need.
-        video: File of the video, if one is wanted.
-        max_steps: Stop here; None leaves it to the environment.
-        case: The map, of a folder of them.
-        keep_replay: Keep what the report's player needs.
-        bag: Folder of the rosbag, if one is wanted.
-    """
-
-    env: EnvEntry
-    policy: PolicyEntry
-    seed: int
-    keep_picture: bool = False
-    video: Path | None = None
-    max_steps: int | None = None
-    case: MapCase | None = None
-    keep_replay: bool = False
-    bag: Path | None = None
-
-    def __str__(self) -> str:
-        which = f"seed {self.seed}" if self.case is None else f"map {self.case.name!r}"
-        return f"environment {self.env.label!r}, policy {self.policy.title!r}, {which}"
-
-
-@dataclass(frozen=True)
 class _Failure:
     """An exception as text: what a worker raised may not survive the way back as an object."""
 
@@ -85,37 +55,6 @@ class _Failure:
     report: str
     refused: bool
     of_map: bool = False
-
-
-def list_tasks(config: ComparisonConfig, folder: Path) -> list[Task]:
-    """Return every episode of a comparison; the first of each environment and policy is drawn and recorded.
-
-    The first is fixed before anything is known about it: a picture of the best one would be advertising.
-
-    Args:
-        config: The comparison.
-        folder: Of the results, for ``videos`` and ``bags``.
-    """
-    tasks = []
-    for env in config.worlds:
-        cases = config.cases(env)
-        for policy in config.participants:
-            for number, case in enumerate(cases):
-                task = Task(env, policy, config.seed + number, case=case)
-                tasks.append(_documented(task, config, folder) if number == 0 else task)
-    return tasks
-
-
-def _documented(task: Task, config: ComparisonConfig, folder: Path) -> Task:
-    """The task with everything that is kept of a first episode."""
-    video = folder / "videos" / place_of(task.env, task.policy, str(config.videos)) if config.videos else None
-    bag = folder / "bags" / place_of(task.env, task.policy, "mcap") if config.record else None
-    return replace(task, keep_picture=config.pictures, video=video, keep_replay=config.report, bag=bag)
-
-
-def place_of(env: EnvEntry, policy: PolicyEntry, suffix: str) -> Path:
-    """Return where a picture or video of an environment and a policy lies in its folder."""
-    return Path(file_name(env.label)) / f"{file_name(policy.title)}.{suffix}"
 
 
 def dry_run(config: ComparisonConfig) -> None:
@@ -164,25 +103,34 @@ def _try(task: Task) -> None:
 
 
 def run_tasks(
-    tasks: Sequence[Task], workers: int | None = None, advance: Callable[[Task], None] | None = None
+    tasks: Sequence[Task],
+    workers: int | None = None,
+    advance: Callable[[Task], None] | None = None,
+    engine: Engine = "processes",
+    ray_address: str | None = None,
 ) -> list[Episode]:
-    """Run episodes on several processes.
+    """Run episodes on several processes, or on a cluster.
 
     Args:
         tasks: What to run.
         workers: Processes; one per available core if None. With one, everything runs in this process.
         advance: Called in this process after each episode, in the order in which they end.
+        engine: ``"processes"`` of this machine, or ``"ray"``.
+        ray_address: Of the cluster, see ``lidarena.base.ray_cluster.ray_results``.
 
     Returns:
         One episode per task, in the tasks' order. Where a map of a folder could not be used it holds the ``error``.
 
     Raises:
-        LidarenaError: A task was refused.
-        EpisodeError: A task raised, or a process died. What had not begun is dropped.
+        LidarenaError: A task was refused, or there is no cluster.
+        EpisodeError: A task raised, or a process died (on a cluster twice). What had not begun is dropped.
     """
     count = min(workers or available_cores(), max(1, len(tasks)))
     pool: AbstractContextManager[Iterator[tuple[int, Episode | _Failure]]]
-    pool = _in_processes(tasks, count) if count > 1 else nullcontext(_in_this_process(tasks))
+    if engine == "ray":
+        pool = closing(_in_cluster(tasks, count, ray_address))
+    else:
+        pool = _in_processes(tasks, count) if count > 1 else nullcontext(_in_this_process(tasks))
     episodes: dict[int, Episode] = {}
     with _single_threaded(), pool as outcomes:
         for index, outcome in outcomes:
@@ -192,15 +140,26 @@ def run_tasks(
     return [episodes[index] for index in range(len(tasks))]
 
 
-def available_cores() -> int:
-    """Return the number of cores that this process may use."""
-    affinity = getattr(os, "sched_getaffinity", None)  # not on macOS and Windows
-    return len(affinity(0)) if affinity else os.cpu_count() or 1
-
-
 def _in_this_process(tasks: Sequence[Task]) -> Iterator[tuple[int, Episode | _Failure]]:
     for index, task in enumerate(tasks):
         yield index, _guarded(partial(_run, task))
+
+
+def _in_cluster(
+    tasks: Sequence[Task], cores: int, address: str | None
+) -> Generator[tuple[int, Episode | _Failure], None, None]:
+    try:
+        yield from cluster_outcomes(_run_alone, tasks, address, cores, dict.fromkeys(THREAD_VARIABLES, "1"))
+    except ClusterError as error:
+        raise EpisodeError(f"{tasks[error.index]}: the worker or its node ended twice: {error}") from error
+
+
+def _run_alone(task: Task) -> Episode | _Failure:
+    """Run a task in a worker of a cluster."""
+    numba.set_num_threads(1)
+    cv2.setNumThreads(1)
+    keep_quiet()
+    return _guarded(partial(_run, task))
 
 
 @contextmanager

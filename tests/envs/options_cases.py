@@ -21,7 +21,7 @@ WRONG: list[tuple[dict[str, Any], str]] = [
 
 def check_editors_see_every_keyword(options: Any, keywords: Any) -> None:
     """The typed dictionary that editors complete from has the fields of the options."""
-    assert [field.name for field in fields(options)] == list(keywords.__annotations__)
+    assert sorted(field.name for field in fields(options)) == sorted(keywords.__annotations__)
 
 
 def check_defaults(options: Any, steps: int) -> None:

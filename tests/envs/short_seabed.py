@@ -3,7 +3,7 @@
 from typing import Any
 
 SEABED: dict[str, Any] = {
-    "duration": 3.0,
+    "duration": 2.0,
     "seabeds": 1,
     "count": 100,
     "least_matches": 20,

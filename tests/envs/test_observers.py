@@ -180,3 +180,9 @@ def test_covariances_do_not_depend_on_the_size_of_the_batch() -> None:
     together = scaled_covariance(many)
     assert np.array_equal(together, np.concatenate([scaled_covariance(one[None]) for one in many]))
     assert (np.abs(together) <= 1.0).all()
+
+
+def test_an_observer_of_ones_own_is_not_bound_to_the_beams_of_another() -> None:
+    """DA-SLAM's observation shows a beam at 45 degrees, which this lidar has not."""
+    env = gym.make("lidarena/Env1-v0", observation=Nearest, lidar={"beams": 4}, max_episode_steps=5)
+    assert env.observation_space.contains(env.reset(seed=0)[0])

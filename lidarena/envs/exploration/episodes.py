@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from lidarena.envs.base_episodes import OneAgentEpisodes
 from lidarena.envs.episodes import Outcome
 from lidarena.envs.exploration.actions import action_space, commands_of
-from lidarena.envs.exploration.observations import ENTROPY, check_entropy, make_observer
+from lidarena.envs.exploration.observations import ENTROPY, BatchObserver, check_entropy, make_observer
 from lidarena.envs.exploration.options import OBSERVATIONS, ExplorationOptions
 from lidarena.envs.exploration.rendering import draw_exploration, path_points
 from lidarena.envs.exploration.rewards import REWARDS, ExplorationTerms
@@ -42,7 +42,7 @@ class ExplorationEpisodes(OneAgentEpisodes):
         super().__init__(worlds, options, chosen, action_space(options.action))
         self.core = ExplorationCore(worlds, options)
         parts = 1 if options.action == "discrete" else 2
-        self.observer = make_observer("da_slam", parts, options.lidar)
+        self._observer: BatchObserver | None = None
         self._choose_observation(OBSERVATIONS, lambda name: self._observe_by(name, parts))
         self.recorder = PathRecorder(worlds) if options.render_mode is not None else None
         self._previous = np.zeros((worlds, parts))
@@ -58,8 +58,8 @@ class ExplorationEpisodes(OneAgentEpisodes):
         """Observe by one of the family's own kinds; returns its space."""
         if name.endswith(ENTROPY):
             check_entropy(self.core)
-        self.observer = make_observer(name, parts, self.options.lidar)
-        return self.observer.space
+        self._observer = make_observer(name, parts, self.options.lidar)
+        return self._observer.space
 
     def _begin(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
         self.core.reset_world(world, rng)
@@ -114,7 +114,8 @@ class ExplorationEpisodes(OneAgentEpisodes):
             self._previous[:] = 0.5 * (actions.clip(-1.0, 1.0) + 1.0)
 
     def _look(self) -> Any:
-        return self.observer.observe(self.core, self._previous)
+        assert self._observer is not None  # or an observer of one's own looks
+        return self._observer.observe(self.core, self._previous)
 
     def _snapshot(self) -> Callable[[tuple[int, ...]], Info]:
         """What every step tells, as it is now; one world's part by its number."""

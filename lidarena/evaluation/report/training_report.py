@@ -15,7 +15,8 @@ from lidarena.base.yaml_config import read_yaml
 from lidarena.evaluation.comparison_config import EnvEntry, PolicyEntry
 from lidarena.evaluation.report.sources import Figure, Player, ReportContent
 from lidarena.evaluation.reward_curves import Trainings, draw_curves
-from lidarena.evaluation.runner import EpisodeError, Task, run_tasks
+from lidarena.evaluation.runner import EpisodeError, run_tasks
+from lidarena.evaluation.tasks import Task
 
 SEED = 1_000_000
 """Of the episode that is driven for the report: none that a training begins with."""

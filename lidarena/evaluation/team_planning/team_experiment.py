@@ -17,10 +17,9 @@ from pydantic import Field
 from rich.console import Console
 
 from lidarena.base.errors import ConfigError
-from lidarena.base.worker_processes import worker_pool
+from lidarena.base.worker_processes import available_cores, worker_pool
 from lidarena.base.yaml_config import ConfigModel
 from lidarena.evaluation.progress_report import report_progress
-from lidarena.evaluation.runner import available_cores
 from lidarena.evaluation.team_planning.team_problems import (
     Problem,
     ProblemGrid,
