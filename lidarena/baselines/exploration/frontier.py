@@ -21,7 +21,13 @@ _BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a p
 _HOLLOW = 1.5  # a frontier whose middle is farther than this from all its cells runs around known ground (m)
 _VIEW = 2.0  # a frontier longer than so many ranges of the lidar is worth no more than one of this length
 _TURNING = 0.8  # metres that a radian of turning is worth where a frontier runs around the robot
+_ENCLOSED = 20.0  # so long it waits where frontiers are left, but no way to them: another pose may open one (s)
 _GROWTH = 0.001  # growth of the known map that justifies a second pass
+
+
+def _known(terrain: Terrain) -> int:
+    """Cells of the map that are known."""
+    return int(np.count_nonzero(terrain.occupancy >= 0))
 
 
 def _checked_robot(env: Any, options: Mapping[str, float], clearance: float | None) -> Robot:
@@ -114,6 +120,7 @@ class FrontierPolicy:
         self._every = max(1, round(planner_period / robot.period))
         self._timeout = math.ceil(progress_timeout / robot.period)
         self._patience = math.ceil(arrival_patience / robot.period)
+        self._enclosed = math.ceil(_ENCLOSED / robot.period)
         self._last_pass = math.ceil(last_pass_timeout / robot.period)
         self.driver = Driver(robot, clearance)
         self.reset()
@@ -163,8 +170,15 @@ class FrontierPolicy:
             self._wanted_at = self._step
             return
         self.driver.stop()
+        if terrain is None:
+            return
+        out_of_reach = self._ending == OUT_OF_REACH
+        if out_of_reach and self._blacklist.pardon(_known(terrain)):
+            self._wanted_at = self._step
+            return
         # SLAM may be a scan behind, so that nothing left must stay so for a while
-        self.finished = terrain is not None and self._step - self._wanted_at >= self._patience
+        waits = out_of_reach and any(next(self._goals(one, terrain), None) is None for one in self.frontiers)
+        self.finished = self._step - self._wanted_at >= (self._enclosed if waits else self._patience)
 
     def _set_out(self, terrain: Terrain) -> bool:
         """Set out for the best frontier; whether there is still one that is worth it."""
@@ -216,7 +230,7 @@ class FrontierPolicy:
 
     def _is_exhausted(self, terrain: Terrain) -> bool:
         """Whether the map has hardly grown for too long."""
-        known = int(np.count_nonzero(terrain.occupancy >= 0))
+        known = _known(terrain)
         if known > (1.0 + _GROWTH) * self._known:
             self._known, self._grown_at = known, self._step
         return self._step - self._grown_at >= self._last_pass

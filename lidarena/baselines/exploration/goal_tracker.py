@@ -3,6 +3,8 @@
 import math
 from dataclasses import dataclass, field
 
+from lidarena.planning.driving.goals import PARDONS, REGROWN
+
 Goal = tuple[float, float]
 
 SAME_GOAL = 0.25
@@ -36,6 +38,9 @@ class GoalBlacklist:
     _progress_at: int = 0
     _shortest: float = math.inf
     _failures: list[Goal] = field(default_factory=list)
+    _from_afar: list[bool] = field(default_factory=list)  # which of ``given_up`` were given up far from them
+    _pardons: int = 0
+    _pardoned: int = 0
 
     def is_given_up(self, goal: Goal) -> bool:
         """Return whether a goal has been given up."""
@@ -63,7 +68,11 @@ class GoalBlacklist:
             self.arrived_at = step
         in_vain = self.arrived_at is not None and step - self.arrived_at >= self.patience
         if in_vain or step - self._progress_at >= self.timeout:
-            self.given_up.append(self.pursued)
+            self._give_up(self.pursued, from_afar=False)
+
+    def _give_up(self, goal: Goal, from_afar: bool) -> None:
+        self.given_up.append(goal)
+        self._from_afar.append(from_afar)
 
     def fail(self, goal: Goal, for_good: bool = False) -> bool:
         """Note that no commands were found for a goal.
@@ -77,6 +86,21 @@ class GoalBlacklist:
         """
         self._failures.append(goal)
         if for_good or sum(is_same(goal, other) for other in self._failures) >= self.tries:
-            self.given_up.append(goal)
+            self._give_up(goal, from_afar=not for_good)
             return True
         return False
+
+    def pardon(self, known: int) -> bool:
+        """Let goals be tried again that were given up from afar, see ``driving.goals.pardon``; whether there are any.
+
+        Args:
+            known: Cells of the map that are known.
+        """
+        if known > REGROWN * self._pardoned:
+            self._pardons = 0
+        if self._pardons >= PARDONS or not any(self._from_afar):
+            return False
+        self.given_up = [goal for goal, afar in zip(self.given_up, self._from_afar, strict=True) if not afar]
+        self._from_afar, self._failures = [False] * len(self.given_up), []
+        self._pardons, self._pardoned = self._pardons + 1, known
+        return True

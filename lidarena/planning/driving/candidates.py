@@ -30,6 +30,7 @@ class Candidates(NamedTuple):
     Attributes:
         number: (W,) how many there are.
         found: (W,) bool, whether there is any frontier, be it given up.
+        apart: (W,) bool, whether there is any to which no way comes near.
         kind: (W, K) ``FRONTIER`` or ``PLACE``.
         goals: (W, K, 2, 2) where to go for it: to its middle, or to its end nearest to the robot; x, y [m].
         usable: (W, K, 2) bool, which of the two are of use.
@@ -47,6 +48,7 @@ class Candidates(NamedTuple):
 
     number: NDArray[np.int64]
     found: NDArray[np.bool_]
+    apart: NDArray[np.bool_]
     kind: NDArray[np.int64]
     goals: NDArray[np.float64]
     usable: NDArray[np.bool_]
@@ -66,6 +68,7 @@ def empty_candidates(worlds: int, most: int) -> Candidates:
     """Allocate room for so many a world."""
     return Candidates(
         np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.bool_),
         np.zeros(worlds, np.bool_),
         np.zeros((worlds, most), np.int64),
         np.zeros((worlds, most, 2, 2)),
@@ -158,7 +161,8 @@ def find_frontier_candidates(
     rows, columns = ground.extent[w, 2], ground.extent[w, 3]
     occupancy = ground.occupancy[w, : rows * columns].reshape(rows, columns)
     reachable = ground.reachable[w, : rows * columns].reshape(rows, columns)
-    candidates.number[w], candidates.found[w], candidates.pursued[w] = 0, False, -1
+    candidates.number[w], candidates.pursued[w] = 0, -1
+    candidates.found[w] = candidates.apart[w] = False
     row, column = nearest_free(occupancy, ground.cell[w, 0], ground.cell[w, 1])
     if row < 0:
         return
@@ -174,6 +178,7 @@ def find_frontier_candidates(
         if goals[0, 0] < 0:
             return  # nothing can be reached at all
         candidates.found[w] = True
+        candidates.apart[w] |= off.min() * side > _FAR_GOAL
         x = (goals[:, 1] + 0.5) * side + ground.frame[w, 0]
         y = (goals[:, 0] + 0.5) * side + ground.frame[w, 1]
         usable = np.empty(2, np.bool_)

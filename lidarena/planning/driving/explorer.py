@@ -39,6 +39,7 @@ from lidarena.planning.driving.goals import (
     give_up,
     is_given_up,
     open_accounts,
+    pardon,
     pursue,
     watch,
 )
@@ -64,6 +65,8 @@ class ExplorerSettings(NamedTuple):
         every: Steps between two choices at most.
         timeout: A goal is given up after so many steps without coming nearer.
         patience: A goal is given up so many steps after arrival; so long nothing must be left before the end.
+        enclosed: So long instead if frontiers are left, but no way to them: a passage that a pose by some centimetres
+            off has closed opens again.
         fruitless: The exploration ends after so many steps without anything new.
         least: Smallest frontier that is a candidate [m].
         places: Known places that are candidates, at most.
@@ -74,6 +77,7 @@ class ExplorerSettings(NamedTuple):
     every: int
     timeout: int
     patience: int
+    enclosed: int
     fruitless: int
     least: float
     places: int
@@ -206,9 +210,21 @@ def advance(
             explorers.wanted_at[w] = step
             return DRIVES
     stop(w, drive)
-    # SLAM may be a scan behind, so that nothing left must stay so for a while
-    explorers.finished[w] = is_known and step - explorers.wanted_at[w] >= settings.patience
+    explorers.finished[w] = is_known and _has_ended(w, settings, explorers)
     return ENDS if explorers.finished[w] else DRIVES
+
+
+@kernel
+def _has_ended(w: int, settings: ExplorerSettings, explorers: Explorers) -> bool:
+    """Whether it is the end that nothing is left: not at once, and not while anything may be tried again."""
+    out_of_reach = explorers.ending[w] == OUT_OF_REACH
+    if out_of_reach and pardon(w, _count_known(w, explorers.drive), explorers.accounts):
+        explorers.wanted_at[w] = explorers.step[w]
+        return False
+    # SLAM may be a scan behind, so that nothing left must stay so for a while
+    waits = out_of_reach and explorers.candidates.apart[w]
+    patience = settings.enclosed if waits else settings.patience
+    return bool(explorers.step[w] - explorers.wanted_at[w] >= patience)
 
 
 @kernel
@@ -265,11 +281,18 @@ def _recognise_place(w: int, explorers: Explorers) -> None:
 
 
 @kernel
+def _count_known(w: int, drive: Drive) -> int:
+    """Known cells of the newest survey."""
+    extent, known = drive.ground.extent[w], 0
+    for k in range(extent[2] * extent[3]):
+        known += drive.ground.occupancy[w, k] >= 0
+    return known
+
+
+@kernel
 def _note_growth(w: int, log_d: float, explorers: Explorers) -> None:
     """Count what is known, and note how certain the pose was from which the new part was seen."""
-    extent, known = explorers.drive.ground.extent[w], 0
-    for k in range(extent[2] * extent[3]):
-        known += explorers.drive.ground.occupancy[w, k] >= 0
+    known = _count_known(w, explorers.drive)
     explorers.sum_log_d[w] += log_d * max(known - explorers.mapped[w], 0)
     explorers.mapped[w] = max(known, explorers.mapped[w])
     if known > (1.0 + _GROWTH) * explorers.known[w]:

@@ -13,6 +13,10 @@ TRIES = 3
 """A goal for which no commands are found at so many planning instants is given up."""
 _PROGRESS = 0.05  # what counts as having come nearer [m]
 _MOST = 256  # goals that are remembered; the oldest are forgotten
+PARDONS = 3
+"""Goals that were given up from afar are tried again so often, and anew once the map has grown."""
+REGROWN = 1.01
+"""By so much it must grow for that."""
 
 
 class GoalAccounts(NamedTuple):
@@ -23,6 +27,9 @@ class GoalAccounts(NamedTuple):
         has_pursued: (W,) bool.
         given_up: (W, goals, 2) that are not tried again, in turn.
         given_up_count: (W,) how many there were.
+        from_afar: (W, goals) bool, for which of these no commands were found from where the robot was, far from them.
+        pardons: (W,) how often such goals were pardoned since the map has grown.
+        pardoned: (W,) cells known at the last time.
         failures: (W, goals, 2) for which no commands were found, in turn.
         failure_count: (W,) how many there were.
         arrived_at: (W,) step of the arrival, -1 before it.
@@ -34,6 +41,9 @@ class GoalAccounts(NamedTuple):
     has_pursued: NDArray[np.bool_]
     given_up: NDArray[np.float64]
     given_up_count: NDArray[np.int64]
+    from_afar: NDArray[np.bool_]
+    pardons: NDArray[np.int64]
+    pardoned: NDArray[np.int64]
     failures: NDArray[np.float64]
     failure_count: NDArray[np.int64]
     arrived_at: NDArray[np.int64]
@@ -48,6 +58,9 @@ def empty_accounts(worlds: int) -> GoalAccounts:
         np.zeros(worlds, np.bool_),
         np.zeros((worlds, _MOST, 2)),
         np.zeros(worlds, np.int64),
+        np.zeros((worlds, _MOST), np.bool_),
+        np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.int64),
         np.zeros((worlds, _MOST, 2)),
         np.zeros(worlds, np.int64),
         np.full(worlds, -1, np.int64),
@@ -60,6 +73,7 @@ def open_accounts(accounts: GoalAccounts, world: int) -> None:
     """Begin an episode in one world."""
     accounts.has_pursued[world] = False
     accounts.given_up_count[world] = accounts.failure_count[world] = accounts.progress_at[world] = 0
+    accounts.pardons[world] = accounts.pardoned[world] = 0
     accounts.arrived_at[world], accounts.shortest[world] = -1, np.inf
 
 
@@ -82,6 +96,7 @@ def give_up(w: int, x: float, y: float, accounts: GoalAccounts) -> None:
     """Never try a goal again."""
     slot = accounts.given_up_count[w] % _MOST
     accounts.given_up[w, slot, 0], accounts.given_up[w, slot, 1] = x, y
+    accounts.from_afar[w, slot] = False
     accounts.given_up_count[w] += 1
 
 
@@ -129,6 +144,38 @@ def fail(w: int, x: float, y: float, for_good: bool, accounts: GoalAccounts) -> 
     for i in range(min(accounts.failure_count[w], _MOST)):
         tries += _is_same(x, y, accounts.failures[w, i])
     if for_good or tries >= TRIES:
+        slot = accounts.given_up_count[w] % _MOST
         give_up(w, x, y, accounts)
+        accounts.from_afar[w, slot] = not for_good
         return True
     return False
+
+
+@kernel
+def pardon(w: int, known: int, accounts: GoalAccounts) -> bool:
+    """Let goals be tried again that were given up from afar; whether there are any.
+
+    That no commands were found says as much of where the robot was as of the goal. It is done ``PARDONS`` times, and
+    anew once the map has grown by ``REGROWN``, so that it ends.
+
+    Args:
+        w: World.
+        known: Cells that are known.
+        accounts: Of all worlds.
+    """
+    if known > REGROWN * accounts.pardoned[w]:
+        accounts.pardons[w] = 0
+    if accounts.pardons[w] >= PARDONS:
+        return False
+    kept, count = 0, min(accounts.given_up_count[w], _MOST)
+    for i in range(count):
+        if not accounts.from_afar[w, i]:
+            accounts.given_up[w, kept] = accounts.given_up[w, i]
+            accounts.from_afar[w, kept] = False
+            kept += 1
+    if kept == count:
+        return False
+    accounts.given_up_count[w], accounts.failure_count[w] = kept, 0
+    accounts.pardons[w] += 1
+    accounts.pardoned[w] = known
+    return True

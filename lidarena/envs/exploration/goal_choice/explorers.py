@@ -23,7 +23,7 @@ from lidarena.planning.driving.state import DriverSettings, LidarView, Perceptio
 from lidarena.planning.grid.steering import Commands
 from lidarena.slam.readings import Share, next_world
 
-_TIMEOUT, _PATIENCE, _FRUITLESS = 30.0, 2.0, 120.0  # [s]
+_TIMEOUT, _PATIENCE, _ENCLOSED, _FRUITLESS = 30.0, 2.0, 20.0, 120.0  # [s]
 _ADVANTAGE_RADIUS = 15.0  # [m], Ericson et al.'s
 
 
@@ -63,10 +63,12 @@ def discrete_driver(options: ExplorationOptions, resolution: float) -> DriverSet
 
 def explorer_settings(period: float, choice_period: float, least_frontier: float, places: int) -> ExplorerSettings:
     """Return when a choice is due and what is told, from seconds and metres."""
-    every, timeout, patience, fruitless = (
-        max(1, round(seconds / period)) for seconds in (choice_period, _TIMEOUT, _PATIENCE, _FRUITLESS)
+    every, timeout, patience, enclosed, fruitless = (
+        max(1, round(seconds / period)) for seconds in (choice_period, _TIMEOUT, _PATIENCE, _ENCLOSED, _FRUITLESS)
     )
-    return ExplorerSettings(every, timeout, patience, fruitless, least_frontier, places, _ADVANTAGE_RADIUS, period)
+    return ExplorerSettings(
+        every, timeout, patience, enclosed, fruitless, least_frontier, places, _ADVANTAGE_RADIUS, period
+    )
 
 
 @kernel
