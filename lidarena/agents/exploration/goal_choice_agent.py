@@ -8,10 +8,11 @@ from numpy.typing import NDArray
 
 from lidarena.agents.learned_policy import LearnedPolicy
 from lidarena.base.errors import PolicyFileError
+from lidarena.base.keyword_checks import check_range
 from lidarena.baselines.exploration.choosing_explorer import ChoosingExplorer
 from lidarena.envs.exploration.goal_choice.episodes import LARGEST
 from lidarena.envs.exploration.goal_choice.features import FEATURES
-from lidarena.envs.exploration.goal_choice.options import GoalChoiceOptions
+from lidarena.envs.exploration.goal_choice.options import LEAST_FRONTIERS, GoalChoiceOptions
 
 _TOLD = ("candidates", "places", "least_frontier", "choice_period")
 
@@ -23,16 +24,19 @@ class GoalChoiceAgent:
         learned: The network; of ``lidarena/GoalChoice-v0``.
     """
 
-    def __init__(self, env: Any, learned: LearnedPolicy, *, preference: float = 0.5) -> None:
+    def __init__(
+        self, env: Any, learned: LearnedPolicy, *, preference: float = 0.5, least_frontier: float | None = None
+    ) -> None:
         """Make it for an exploration environment.
 
         Args:
             env: The environment; any ``observation``, ``reward`` or ``action``.
             learned: What `lidarena.agents.load` gave.
             preference: How much certainty is worth, from 0, the shortest way, to 1, the surest.
+            least_frontier: Smaller frontiers are left [m]; None: as in its training.
 
         Raises:
-            ConfigError: A preference out of range.
+            ConfigError: A preference or a frontier out of range.
             PolicyFileError: The network was trained on other features of the candidates.
         """
         shape = learned.observation_space.shape
@@ -43,6 +47,9 @@ class GoalChoiceAgent:
             )
         self.learned = learned
         trained = {name: learned.env_keywords.get(name, getattr(GoalChoiceOptions, name)) for name in _TOLD}
+        if least_frontier is not None:
+            check_range("least_frontier", least_frontier, *LEAST_FRONTIERS)
+            trained["least_frontier"] = float(least_frontier)
         self._explorer = ChoosingExplorer(env, self._choose, preference=preference, **trained)
 
     def _choose(self, rows: NDArray[np.float32]) -> int:

@@ -11,7 +11,9 @@ from lidarena.envs.exploration.options import ExplorationKeywords, ExplorationOp
 from lidarena.envs.rewards import RewardSpec, choose_reward
 
 _NOT_TAKEN = ("action", "observation", "reward", "stop_at", "max_episode_steps", "eta", "certain_enough", "patience")
-_LIMITS = Limits(ranges={"choice_period": (0.2, 60.0), "least_frontier": (0.05, 10.0)},
+LEAST_FRONTIERS = (0.05, 10.0)
+"""The smallest frontier that is a candidate may be so long, from and to [m]."""
+_LIMITS = Limits(ranges={"choice_period": (0.2, 60.0), "least_frontier": LEAST_FRONTIERS},
                  whole={"candidates": (2, 256), "places": (0, 100)})  # fmt: skip
 
 
