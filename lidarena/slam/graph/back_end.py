@@ -33,6 +33,8 @@ _END = 60
 _SELDOM = 50.0
 """Keyframes from one moving of all nodes to the next, at least: their number over this, so that a scan's share of the
 time does not grow with the map."""
+_TIED = 15.0
+"""Where a loop leads to a place that is nearer along the graph already, no second one is searched at the time [m]."""
 _FARTHEST = 200.0
 """Ways along the graph beyond this make no place more uncertain [m]."""
 _UPPER = np.array([[0, 1, 2], [1, 3, 4], [2, 4, 5]])
@@ -199,6 +201,8 @@ class BackEnd:
             loop = self._verified(poses, views, k, target, float(radius[target]))
             if loop is not None:
                 found.append(loop)
+                if unclosed[target] < _TIED:
+                    break
             free[max(target - 40, 0) : target + 40] = False
         return found
 
