@@ -12,6 +12,8 @@ CLOCK_SLACK = 1.0
 up to 0.9 s, 629 times); more than this is a wrong stamp."""
 _MOST_WRONG = 0.1
 """With a larger share of wrong stamps it is not known which are the right ones."""
+_LONG_PAUSE = 3600.0
+"""A few readings farther than this from all others, at the beginning or the end, have wrong stamps [s]."""
 READING_PERIOD = 0.1
 """Seconds between two readings whose stamps are ignored."""
 
@@ -34,11 +36,12 @@ def mended_times(times: NDArray[np.float64], name: str) -> tuple[NDArray[np.floa
     """
     stamped = np.isfinite(times) & (times > 0.0)
     if not stamped.any():
-        if np.all(times == 0.0):
-            return numbered_times(len(times)), ("no reading has a time stamp; they are numbered instead",)
-        return times, ()
+        if np.all(np.diff(times) >= 0.0) and np.any(times < 0.0):
+            return times, ()
+        return numbered_times(len(times)), ("no reading has a usable time stamp; they are numbered instead",)
     right = stamped.copy()
     right[stamped] = _forward(times[stamped])
+    right[right] = _of_one_day(times[right])
     wrong, unset = int(np.sum(stamped & ~right)), int(np.sum(~stamped))
     if wrong > max(_MOST_WRONG * np.sum(stamped), 1):
         first = int(np.flatnonzero(stamped & ~right)[0])
@@ -46,8 +49,7 @@ def mended_times(times: NDArray[np.float64], name: str) -> tuple[NDArray[np.floa
             f"{name} has {wrong:,} of {len(times):,} time stamps that do not run forwards, the first of them "
             f"{times[first]:.3f} s at reading {first + 1}; mend the log, or go by its order alone (--ignore-times)"
         )
-    every = np.arange(len(times))
-    mended: NDArray[np.float64] = np.where(right, times, np.interp(every, every[right], times[right]))
+    mended = _between_right_ones(times, right)
     notes = []
     if unset:
         notes.append(f"{unset:,} readings have no time stamp; they got times between their neighbours'")
@@ -57,6 +59,30 @@ def mended_times(times: NDArray[np.float64], name: str) -> tuple[NDArray[np.floa
             f"{wrong:,} wrong time stamps were set aside, the first of them {times[first]:.3f} s at reading {first + 1}"
         )
     return mended, tuple(notes)
+
+
+def _between_right_ones(times: NDArray[np.float64], right: NDArray[np.bool_]) -> NDArray[np.float64]:
+    """The stamps (R,), those that are not ``right`` evenly between those around them or on from the outermost."""
+    every = np.arange(len(times))
+    first, last = every[right][[0, -1]]
+    step = float(times[last] - times[first]) / max(last - first, 1)
+    beyond = step * (np.minimum(every - first, 0) + np.maximum(every - last, 0))
+    mended: NDArray[np.float64] = np.where(right, times, np.interp(every, every[right], times[right]) + beyond)
+    return mended
+
+
+def _of_one_day(times: NDArray[np.float64]) -> NDArray[np.bool_]:
+    """Which stamps (n,) of a run belong to most of the others: a clock may have been set right after it began."""
+    kept = np.ones(len(times), np.bool_)
+    if len(times) < 3:
+        return kept
+    gaps = np.diff(times)
+    after = int(np.argmax(gaps)) + 1
+    lasted = float(times[-1] - times[0] - gaps[after - 1])
+    few = min(after, len(times) - after) <= max(_MOST_WRONG * len(times), 1)
+    if few and gaps[after - 1] > max(_LONG_PAUSE, 10.0 * lasted):
+        kept[slice(0, after) if after <= len(times) - after else slice(after, None)] = False
+    return kept
 
 
 def numbered_times(count: int) -> NDArray[np.float64]:

@@ -47,3 +47,28 @@ def test_a_log_without_any_stamp_is_numbered() -> None:
 def test_a_clock_that_means_nothing_is_refused() -> None:
     with pytest.raises(LogError, match=r"time stamps that do not run forwards.*\(--ignore-times\)"):
         mended_times(np.random.default_rng(0).permutation(TIMES), "log 'a'")
+
+
+@pytest.mark.parametrize(("wrong", "by"), [(slice(0, 1), -1e6), (slice(0, 3), -1.1e9), (slice(58, 60), 1e7)])
+def test_a_clock_that_was_set_right_on_the_way_is_noticed(wrong: slice, by: float) -> None:
+    true = 1.2e9 + 0.2 * np.arange(60)
+    times = true.copy()
+    times[wrong] += by
+    mended, notes = mended_times(times, "log")
+    np.testing.assert_allclose(mended, true, atol=1e-5)
+    assert "wrong time stamps were set aside" in notes[0]
+
+
+def test_a_pause_for_lunch_is_none() -> None:
+    times = 1.2e9 + 0.2 * np.arange(60)
+    times[30:] += 5000.0
+    mended, notes = mended_times(times, "log")
+    np.testing.assert_array_equal(mended, times)
+    assert notes == ()
+
+
+def test_stamps_before_the_epoch_that_run_backwards_are_of_no_use() -> None:
+    mended, notes = mended_times(-1.2e9 - 0.2 * np.arange(60), "log")
+    assert (np.diff(mended) > 0.0).all() and "numbered" in notes[0]
+    times = -50.0 + 0.2 * np.arange(60)
+    np.testing.assert_array_equal(mended_times(times, "log")[0], times)
