@@ -112,36 +112,41 @@ class BackEnd:
         """(N, 3) poses of the nodes, as all that is known fits best."""
         return optimized(self.poses, self._edges(), 10) if self._tied else self.poses.copy()
 
-    def loop_edges(self) -> Edges:
-        """The loops between nodes as edges."""
-        if not self._tied:
+    def loop_edges(self, first: int = 0) -> Edges:
+        """The loops from the node in place ``first`` and later ones, as edges."""
+        least = self.nodes.columns.numbers[first] if self._tied else 0
+        loops = [one for one in self._tied if one.later >= least]
+        if not loops:
             return Edges(np.zeros((0, 2), np.int64), np.zeros((0, 3)), np.zeros((0, 3, 3)), np.zeros(0))
-        pairs = self.nodes.places(np.array([(one.earlier, one.later) for one in self._tied], np.int64))
-        motions, information = (np.array([getattr(one, n) for one in self._tied]) for n in ("motion", "information"))
-        return Edges(pairs, motions, information, np.full(len(pairs), _DOUBT))
+        motions, information = (np.array([getattr(one, n) for one in loops]) for n in ("motion", "information"))
+        return Edges(self._ends(loops), motions, information, np.full(len(loops), _DOUBT))
 
-    def way_edges(self) -> Edges:
-        """How each node was measured from the one that it is tied to."""
-        columns, n = self.nodes.columns, max(self.nodes.count - 1, 0)
-        pairs = np.stack([self.nodes.places(columns.sources[1:]), np.arange(1, n + 1)], axis=1)
-        return Edges(pairs, columns.steps[1:], columns.information[1:], np.full(n, np.inf))
+    def _ends(self, loops: list[FoundLoop]) -> NDArray[np.int64]:
+        """(L, 2) places of the nodes that loops tie."""
+        return self.nodes.places(np.array([(one.earlier, one.later) for one in loops], np.int64).reshape(-1, 2))
 
-    def _edges(self) -> Edges:
-        """The way from node to node and the loops."""
-        return joined([self.way_edges(), self.loop_edges()])
+    def way_edges(self, first: int = 1) -> Edges:
+        """How the node in place ``first`` and each later one was measured from the one that it is tied to."""
+        columns, places = self.nodes.columns, np.arange(first, max(self.nodes.count, first))
+        pairs = np.stack([self.nodes.places(columns.sources[first:]), places], axis=1)
+        return Edges(pairs, columns.steps[first:], columns.information[first:], np.full(len(places), np.inf))
+
+    def _edges(self, first: int = 1) -> Edges:
+        """The way from node to node and the loops, of the node in place ``first`` and later ones."""
+        return joined([self.way_edges(first), self.loop_edges(first)])
 
     def _close(self) -> None:
         """Move the nodes to where the loops just found are met: the last ones alone, if that is enough."""
-        poses, edges = self.poses, self._edges()
-        moved, strained = optimized_end(poses, edges, max(self.nodes.count - _END, 1), 3)
+        poses, first = self.poses, max(self.nodes.count - _END, 1)
+        moved, strained = optimized_end(poses, self._edges(first), first, 3)
         if strained and self._keyframes - self._moved_all > self.nodes.count / _SELDOM:
-            moved, self._moved_all = optimized(poses, edges, 4, settled=1e-3), self._keyframes
+            moved, self._moved_all = optimized(poses, self._edges(), 4, settled=1e-3), self._keyframes
         poses[:] = moved
 
     def _unclosed(self, n: int) -> Floats:
         """(n,) how far each node before the last, n, is along the graph, where a loop is a short cut [m]."""
         columns = self.nodes.columns
-        ways, loops = self.way_edges().pairs, self.loop_edges().pairs
+        ways, loops = self.way_edges().pairs, self._ends(self._tied)
         length = np.where(np.diff(ways, axis=1)[:, 0] == 1, np.diff(columns.ways), 0.3)
         pairs, weights = np.concatenate([ways, loops]), np.concatenate([length + 0.02, np.full(len(loops), 0.3)])
         graph = coo_matrix((weights, (pairs[:, 0], pairs[:, 1])), shape=(n + 1, n + 1)).tocsr()

@@ -26,12 +26,14 @@ def known_from(columns: NodeColumns, before: int, place: int, visits: int) -> in
         visits: How many.
     """
     poses, numbers = columns.poses, columns.numbers
-    away = np.hypot(poses[:before, 0] - poses[place, 0], poses[:before, 1] - poses[place, 1])
-    away += 1.2 * np.abs(wrapped(poses[:before, 2] - poses[place, 2]))
-    near = np.flatnonzero((away < _NEAR) & (numbers[:before] < numbers[place] - _VISIT))
-    if len(near) == 0 or 1 + np.sum(np.diff(numbers[near]) > _VISIT) < visits:
+    beside = np.flatnonzero(np.abs(poses[:before, 0] - poses[place, 0]) < _NEAR)  # most are not, which saves the rest
+    apart = poses[beside] - poses[place]
+    away = np.hypot(apart[:, 0], apart[:, 1]) + 1.2 * np.abs(wrapped(apart[:, 2]))
+    near = (away < _NEAR) & (numbers[beside] < numbers[place] - _VISIT)
+    visited = numbers[beside][near]
+    if len(visited) == 0 or 1 + np.sum(np.diff(visited) > _VISIT) < visits:
         return -1
-    return int(near[np.argmin(away[near])])
+    return int(beside[near][np.argmin(away[near])])
 
 
 def loosened(information: Floats, turn: float) -> Floats:
