@@ -184,12 +184,14 @@ def find_frontier_candidates(
         usable = np.empty(2, np.bool_)
         for k in range(2):
             usable[k] = off[k] * side <= _FAR_GOAL and not is_given_up(w, x[k], y[k], accounts)
+        away = _distance_to_pursued(w, own, drive, accounts)
+        is_pursued = away <= nearest
+        if is_pursued:
+            nearest, candidates.pursued[w] = away, -1  # none is, where that one has been given up
         if not usable.any():
             continue
         at = _insert(w, min(lengths[goals[0, 0], goals[0, 1]], BEYOND), candidates)
-        away = _distance_to_pursued(w, own, drive, accounts)
-        if away <= nearest:
-            nearest = away
+        if is_pursued:
             candidates.pursued[w] = at
         if at < 0:
             continue

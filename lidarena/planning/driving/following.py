@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 from lidarena.base.jit import kernel
 from lidarena.planning.driving.state import Drive, DriverSettings, KnownGround, Perceptions
 from lidarena.planning.driving.survey import points_around
-from lidarena.planning.grid.guard import carried, is_safe, turn_in_place, way_out, way_to
+from lidarena.planning.grid.guard import is_safe, turn_in_place, way_out
 from lidarena.planning.grid.path_following import (
     END_REACH,
     LOOKAHEAD,
@@ -171,28 +171,7 @@ def plan_commands(
     found = found or _towards(w, path, pose, settings, drive, points, margins[1], 0.5 * LOOKAHEAD)
     if not found and not can_loiter(w, pose, drive.ground, settings):
         found = _towards(w, path, pose, settings, drive, points, margins[2], 0.5 * LOOKAHEAD)
-    return found or _among_hits(w, path, pose, settings, drive, points)
-
-
-@kernel
-def _among_hits(
-    w: int,
-    path: NDArray[np.float64],
-    pose: NDArray[np.float64],
-    settings: DriverSettings,
-    drive: Drive,
-    points: NDArray[np.float64],
-) -> bool:
-    """Search commands along a path that the map has closed, among the hits, and queue them; whether there are any."""
-    ground = drive.ground
-    gap, closed, frame = _gap(ground, w), _closed(ground, w), ground.frame[w]
-    index = lookahead_point(path, pose, gap, closed, frame, LOOKAHEAD, settings.margins[1])
-    target = carried(path[index : index + 1], pose, np.zeros(3))[0]
-    found = way_to(points, settings.commands, settings.keep, target)
-    if len(found) == 0 or not is_safe(points, settings.commands, found, settings.keep):
-        return False
-    _enqueue(w, found, 0.0, drive)
-    return True
+    return found
 
 
 @kernel

@@ -23,7 +23,6 @@ _NEARER = 2e-3  # what the robot comes nearer to by less than this it does not a
 _CELL = 0.04  # of the grid on which a way out is searched [m]
 _EASINGS = np.array([0.06, 0.03, 0.0, -0.008])  # of the clearance, one after the other, until there is a way out [m]
 _ROOMY, _MOST_STATES = 0.15, 6000.0  # clearance beyond the least that is preferred on a way out [m]
-_BESIDE = 0.25  # how near to a place is there [m]
 _TOUCHED = 0.02  # what is nearer than the least distance by more than this is no measure for the way out [m]
 
 
@@ -158,36 +157,6 @@ def way_out(points: NDArray[np.float64], commands: Commands, keep: float) -> NDA
         commands: What the robot can do.
         keep: Least distance [m].
     """
-    return _search_among(points, commands, keep, np.zeros(2), 10.0 * GUARDED, _EASINGS)
-
-
-@kernel
-def way_to(
-    points: NDArray[np.float64], commands: Commands, keep: float, target: NDArray[np.float64]
-) -> NDArray[np.int64]:
-    """The quickest commands (n,) to a place nearby, searched among the hits themselves; (0,) if none are found.
-
-    What the map closes, which has them some centimetres aside, may be open.
-
-    Args:
-        points: (n, 2) that beams have hit, in the frame of the robot [m].
-        commands: What the robot can do.
-        keep: Least distance [m].
-        target: (2,) in that frame [m].
-    """
-    return _search_among(points, commands, keep, target, _BESIDE, _EASINGS[:3])
-
-
-@kernel
-def _search_among(
-    points: NDArray[np.float64],
-    commands: Commands,
-    keep: float,
-    target: NDArray[np.float64],
-    reach: float,
-    easings: NDArray[np.float64],
-) -> NDArray[np.int64]:
-    """Search commands to within ``reach`` of a place on a grid of distances to the hits, with less and less room."""
     side = 2 * round(GUARDED / _CELL)
     squares = np.full((side, side), np.inf)
     corner = -0.5 * side * _CELL
@@ -201,11 +170,11 @@ def _search_among(
     own = np.inf
     for i in range(len(points)):
         own = min(own, math.hypot(points[i, 0], points[i, 1]))
-    limits = np.array([reach, GUARDED - 0.5, _MOST_STATES])
-    for easing in easings:
+    limits = np.array([10.0 * GUARDED, GUARDED - 0.5, _MOST_STATES])
+    for easing in _EASINGS:
         least = min(keep + easing, max(own - _NEARER, keep - _TOUCHED))
         margins = np.array([least, keep + _ROOMY, WEIGHT])
-        found = search_commands(gap, closed, frame, here, target, commands, margins, limits)
+        found = search_commands(gap, closed, frame, here, np.zeros(2), commands, margins, limits)
         if len(found) > 0:
             return found
     return np.empty(0, np.int64)

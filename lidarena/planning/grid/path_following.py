@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.jit import kernel
-from lidarena.planning.grid.guard import carried, is_safe, way_to
+from lidarena.planning.grid.guard import is_safe
 from lidarena.planning.grid.steering import Commands, loiter_gap, move, steer, tightest
 from lidarena.planning.grid.surroundings import Surroundings, gap_at, line_is_free
 
@@ -141,20 +141,7 @@ class PathFollower:
             if len(sequence) and is_safe(self.points, self.commands, sequence, self.keep):
                 self.follow(sequence, margin)
                 return True
-        return self._plan_among_hits(path, pose, around)
-
-    def _plan_among_hits(self, path: NDArray[np.float64], pose: NDArray[np.float64], around: Surroundings) -> bool:
-        """Search commands along a path that the map has closed among the hits themselves; whether there are any."""
-        if self.keep <= 0.0:
-            return False  # nothing is known of hits
-        margin = self.least_margin
-        index = lookahead_point(path, pose, around.gap, around.closed, around.frame, self.lookahead, margin)
-        target = carried(path[index : index + 1], np.asarray(pose, np.float64), np.zeros(3))[0]
-        sequence = way_to(self.points, self.commands, self.keep, target)
-        if not len(sequence) or not is_safe(self.points, self.commands, sequence, self.keep):
-            return False
-        self.follow(sequence)
-        return True
+        return False
 
     def follow(self, sequence: NDArray[np.int64], kept: float = 0.0) -> None:
         """Plan a sequence (n,) of commands that is meant to keep a clearance (m)."""

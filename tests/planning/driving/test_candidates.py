@@ -1,7 +1,13 @@
 import numpy as np
 
-from lidarena.planning.driving.candidates import COARSE, lengths_from_robot, measure_ways_between
+from lidarena.planning.driving.candidates import (
+    COARSE,
+    find_frontier_candidates,
+    lengths_from_robot,
+    measure_ways_between,
+)
 from lidarena.planning.driving.explorer import CHOOSES, advance, command, set_out
+from lidarena.planning.driving.goals import give_up
 from lidarena.planning.grid.frontiers import find_frontiers
 from lidarena.planning.grid.grid_search import path_costs
 from tests.planning.driving.worlds import hired, make_world, perceived
@@ -32,6 +38,30 @@ def test_candidates_are_the_frontiers_and_the_ways_to_and_between_them() -> None
             set_out(0, 0, told, driver, explorers)
         info = env.step(command(0, told, driver, explorers))[4]
     assert looked > 5
+
+
+def test_none_is_pursued_once_the_frontier_that_is_driven_to_has_been_given_up() -> None:
+    env, info = make_world(3, map="maze:9?width=8&height=8&loops=0.3")
+    driver, settings, explorers = hired(env, info)
+    candidates, accounts, tried = explorers.candidates, explorers.accounts, 0
+    for _ in range(120):
+        told = perceived(info)
+        status, pursued = advance(0, 0.0, told, driver, settings, explorers), candidates.pursued[0]
+        if status == CHOOSES and pursued >= 0 and candidates.number[0] > 1:
+            count, goals = accounts.given_up_count[0], candidates.goals[0, pursued].copy()
+            for x, y in goals.tolist():
+                give_up(0, x, y, accounts)
+            lengths = lengths_from_robot(0, explorers.drive)
+            find_frontier_candidates(0, 0.2, lengths, explorers.drive, accounts, candidates)
+            assert candidates.pursued[0] == -1
+            accounts.given_up_count[0] = count
+            find_frontier_candidates(0, 0.2, lengths, explorers.drive, accounts, candidates)
+            assert candidates.pursued[0] == pursued
+            tried += 1
+        if status == CHOOSES:
+            set_out(0, 0, told, driver, explorers)
+        info = env.step(command(0, told, driver, explorers))[4]
+    assert tried > 5
 
 
 def test_the_distance_advantage_is_that_of_a_plain_dijkstra_on_blocks() -> None:

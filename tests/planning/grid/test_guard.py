@@ -8,15 +8,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
-from lidarena.planning.grid.guard import (
-    carried,
-    circle_distance,
-    is_safe,
-    nearby,
-    turn_in_place,
-    way_out,
-    way_to,
-)
+from lidarena.planning.grid.guard import carried, circle_distance, is_safe, nearby, turn_in_place, way_out
 from lidarena.planning.grid.path_following import predict
 from lidarena.planning.grid.steering import Commands
 
@@ -123,18 +115,6 @@ def test_there_is_a_way_out_of_a_passage_to_where_the_robot_can_turn(start: tupl
 def test_there_is_no_way_out_of_a_box_that_is_too_small() -> None:
     box = np.concatenate([wall(-0.2, y, 0.2, y) for y in (-0.2, 0.2)] + [wall(x, -0.2, x, 0.2) for x in (-0.2, 0.2)])
     assert len(way_out(box, DISCRETE, KEEP)) == 0
-
-
-def test_the_way_to_a_place_leads_through_the_passage_by_what_the_beams_hit() -> None:
-    pose, goal = np.array([0.6, 0.4, 0.3]), np.array([2.0, 0.25])
-    points = seen(BENT, pose)
-    sequence = way_to(points, DISCRETE, KEEP, carried(goal[None], pose, np.zeros(3))[0])
-    assert len(sequence) == 0  # there is no room to turn
-    room = carried(np.array([[0.5, 0.75]]), pose, np.zeros(3))[0]
-    sequence = way_to(points, DISCRETE, KEEP, room)
-    poses = predict(pose, DISCRETE, sequence)
-    assert math.dist(poses[-1, :2], (0.5, 0.75)) <= 0.25 and is_safe(points, DISCRETE, sequence, KEEP)
-    assert len(way_to(points, DISCRETE, KEEP, np.array([-0.7, -2.0]))) == 0  # behind a wall
 
 
 @pytest.mark.parametrize("seed", range(6))

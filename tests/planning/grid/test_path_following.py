@@ -154,20 +154,7 @@ def test_a_plan_that_beams_contradict_is_not_taken():
     _, around = world("######", "#    #", "######", side=20)
     pose = np.array([1.5, 1.5, 0.0])
     follower = PathFollower(DISCRETE, keep=0.135)
-    follower.points = np.array([[0.5, y] for y in np.arange(-3.0, 3.0, 0.02)])  # across all ways
+    follower.points = np.array([[0.5, y] for y in np.arange(-1.0, 1.0, 0.02)])  # a wall across the way
     assert not follower.plan(line(1.5, 1.5, 4.0, 1.5), pose, around) and not len(follower.planned)
     follower.points = np.array([[-0.5, 0.0]])
     assert follower.plan(line(1.5, 1.5, 4.0, 1.5), pose, around) and len(follower.planned)
-
-
-def test_where_the_map_closes_the_way_commands_are_found_among_what_the_beams_hit():
-    occupancy, _ = world("######", "#    #", "######", side=20)
-    occupancy[20:40, 35:40] = 100
-    around = Surroundings(clearance(occupancy, RES), occupancy > 0, RES, (0.0, 0.0))
-    pose, path = np.array([1.5, 1.5, 0.0]), line(1.5, 1.5, 4.0, 1.5)
-    walls = np.array([[x, y] for y in (-0.5, 0.5) for x in np.arange(-2.5, 2.5, 0.02)])
-    assert not PathFollower(DISCRETE, points=walls).plan(path, pose, around)
-    follower = PathFollower(DISCRETE, keep=0.135, points=walls)
-    assert follower.plan(path, pose, around)
-    ends = predict(pose, DISCRETE, follower.planned)
-    assert ends[-1, 0] > 1.6 and np.abs(ends[:, 1] - 1.5).max() < 0.3
