@@ -49,8 +49,8 @@ class STNU(STN):
         A lower bound below 0, as fitted distributions have it, can be checked; it cannot be executed.
 
         Raises:
-            TemporalError: An unknown point, bounds that are NaN, infinite or crossed, or a point that ends
-                another contingent link already.
+            TemporalError: An unknown point, bounds that are NaN, infinite or crossed, a point that ends another
+                contingent link already, or links that activate each other in a circle, so that none ever begins.
         """
         tail, head = self._number(activation), self._number(contingent)
         what = f"of the contingent link from {activation!r} to {contingent!r}"
@@ -62,6 +62,11 @@ class STNU(STN):
         if contingent in self._links:
             earlier = self._links[contingent].activation
             raise TemporalError(f"{contingent!r} ends a contingent link from {earlier!r} already; it can end one only")
+        circle = [contingent, activation]
+        while circle[-1] in self._links and circle[-1] != contingent:
+            circle.append(self._links[circle[-1]].activation)
+        if circle[-1] == contingent:
+            raise TemporalError(f"the contingent links activate each other in a circle: {' → '.join(circle[::-1])}")
         self._links[contingent] = ContingentLink(activation, float(lower), float(upper), contingent)
         self._arrays = None
 

@@ -52,3 +52,12 @@ def test_in_normal_form_every_link_has_a_point_of_its_own() -> None:
     assert {(int(a), int(b)) for a, b in zip(form.tail, form.head, strict=True)} == {
         (0, 3), (3, 0), (1, 4), (4, 1), (1, 2), (2, 1)
     }  # fmt: skip
+
+
+def test_links_that_wait_for_each_other_are_refused() -> None:
+    network = STNU(["a", "b", "c"])
+    network.add_contingent_link("a", "b", 1, 2)
+    network.add_contingent_link("b", "c", 0, 0)
+    with pytest.raises(TemporalError, match="in a circle: a → b → c → a"):
+        network.add_contingent_link("c", "a", 0, 0)
+    assert len(network.contingent_links) == 2

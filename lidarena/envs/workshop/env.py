@@ -35,11 +35,12 @@ class WorkshopEnv(SingleWorld):
 
     ## Observation space
 
-    ``Box(-10, 10, (13 n + 14,), float32)``. For each action: whether it is open, under way by the robot, under way by
+    ``Box(-10, 10, (15 n + 14,), float32)``. For each action: whether it is open, under way by the robot, under way by
     the human, allowed for the robot, allowed for the human; the time until all that hangs on it is done over the
     deadline; of the robot and then of the human the time of the ways / 20 s and the usual time of the work / 30 s,
-    zeros for who cannot do it; since when it is under way / 30 s, whether the work at its last location has begun, and
-    how many actions it waits for / 3. Of the whole: time over deadline; whether the human is idle, walks, waits, works,
+    zeros for who cannot do it; since when it is under way / 30 s, whether the work at its last location has begun, how
+    many actions it waits for / 3, how often the human has begun something else / 3 and rested / 3 while it was allowed
+    to do this. Of the whole: time over deadline; whether the human is idle, walks, waits, works,
     is away; its pace (time over the usual) and how many actions it has shown it in / 5; the share of the actions that
     is left, the longest chain of work that is left over the deadline, the distance between the two / 10 m, whether the
     robot is idle, the human's idle time over the deadline, whether the robot waits at a location. Or an observer of

@@ -10,7 +10,7 @@ from lidarena.envs.workshop.task import HUMAN, TaskArrays
 from lidarena.envs.workshop.walking import TICK, WalkGrid, way_length
 
 OBSERVATIONS = ("features",)
-PER_ACTION = 13
+PER_ACTION = 15
 """Numbers for each action."""
 OF_ALL = 14
 """Numbers beside."""
@@ -49,6 +49,8 @@ def observe(task: TaskArrays, grid: WalkGrid, s: Records, deadline: float, me: i
             if s.actions[w, k].status == RUNNING:
                 row[10] = (time - s.actions[w, k].begun) / _WORK
                 row[11] = not np.isnan(s.actions[w, k].placed)
+            row[13] = s.actions[w, k].passed_over / 3.0
+            row[14] = s.actions[w, k].declined / 3.0
             for i in range(count):
                 row[12] += (task.before[i, k] and s.actions[w, i].status != DONE) / 3.0
         _observe_all(task, s, w, deadline, me, out[w, count * PER_ACTION :])

@@ -122,8 +122,11 @@ class WorkshopCore:
         settle(self.task.arrays, self.task.grid, self.records, self.rules, near)
 
     def arrays(self) -> dict[str, NDArray[Any]]:
-        """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back."""
-        return dict(self.workers._asdict())
+        """Every array that makes up the worlds' state, by name; ``load_arrays`` writes them back.
+
+        What was noted for pictures is not among them.
+        """
+        return {name: array for name, array in self.workers._asdict().items() if name != "trace"}
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of another core with the same options.
@@ -131,7 +134,7 @@ class WorkshopCore:
         Raises:
             ConfigError: They are those of another task.
         """
-        for name, array in self.workers._asdict().items():
+        for name, array in self.arrays().items():
             if saved[name].shape != array.shape:
                 raise ConfigError(f"the saved state is of another task than {self.task.name!r}: {name!r} differs")
             array[...] = saved[name]

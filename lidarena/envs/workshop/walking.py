@@ -33,7 +33,7 @@ class WalkGrid(NamedTuple):
     toward: NDArray[np.float32]
     """(F, rows, columns, 2) unit vectors along the way; of a cell that is not free, out of it"""
     lengths: NDArray[np.float32]
-    """(F, rows, columns) of the ways [m]; infinite where there is none"""
+    """(F, rows, columns) of the ways, of a cell that is not free from the nearest one [m]; infinite without a way"""
     points: Floats
     """(F, 2) [m]"""
     x: float
@@ -60,7 +60,7 @@ def make_walk_grid(plan: Floorplan, points: Floats, radius: float) -> WalkGrid:
         row, column = cell_of(point[1], y, free.shape[0]), cell_of(point[0], x, free.shape[1])
         ways = way_lengths(free, row, column) if free[row, column] else np.full(free.shape, np.inf)
         _aim(free, ways, nearest, np.array([row, column]), toward[number])
-        lengths[number] = ways * RESOLUTION
+        lengths[number] = ways[nearest[0], nearest[1]] * RESOLUTION  # who was pushed off the ways returns to them
     return WalkGrid(free, toward, lengths, np.ascontiguousarray(points), x, y)
 
 

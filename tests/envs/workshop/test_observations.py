@@ -1,9 +1,11 @@
+from typing import Any
+
 import numpy as np
 import pytest
 
 from lidarena.envs.workshop.env import WorkshopEnv
 from lidarena.envs.workshop.observations import OF_ALL, PER_ACTION
-from tests.envs.workshop.workshops import Sleeper, action, play, task_of
+from tests.envs.workshop.workshops import Sleeper, action, loose, play, task_of
 
 TASK = task_of({"x": action("a", robot=None), "y": action("d", human=None), "z": action("c", after=["y"])})
 
@@ -30,3 +32,17 @@ def test_the_whole_is_told_within_its_space() -> None:
     assert np.isfinite(seen).all() and seen[-OF_ALL] == pytest.approx(last["time"] / env.task.deadline, rel=1e-5)
     assert seen[-OF_ALL + 6] > 1.0  # the human's pace
     assert seen[-OF_ALL + 8] == 0.0  # nothing is left
+
+
+def test_what_the_human_passed_over_and_declined_is_remembered() -> None:
+    def second_or_rest(info: dict[str, Any], rng: np.random.Generator) -> int | None:
+        return 1 if info["allowed_human"][1] else None
+
+    env = WorkshopEnv(task=loose(3), human=second_or_rest)
+    seen, info = env.reset(seed=0)
+    blocks = seen[: 3 * PER_ACTION].reshape(3, PER_ACTION)
+    assert blocks[:, 13] == pytest.approx([1 / 3, 0, 1 / 3]) and not blocks[:, 14].any()
+    while info["status"][1] != 2:
+        seen, _, _, _, info = env.step(3)
+    blocks = seen[: 3 * PER_ACTION].reshape(3, PER_ACTION)
+    assert blocks[:, 14] == pytest.approx([1 / 3, 0, 1 / 3]) and blocks[0, 13] == pytest.approx(1 / 3)

@@ -84,3 +84,9 @@ def test_who_gives_way_goes_where_it_is_free() -> None:
     x, y = flee(grid, np.array([0.34, 3.0]), np.array([1.2, 3.0]), 0.1)
     assert abs(y) > abs(x)  # along the wall
     assert RESOLUTION == TICK == 0.1
+
+
+def test_who_was_pushed_against_a_wall_is_still_a_finite_way_off() -> None:
+    grid = grid_of([(1.0, 1.0), (7.0, 5.0)])
+    assert not is_free(grid, 7.95, 3.0)
+    assert way_length(grid, 0, 7.95, 3.0) == pytest.approx(way_length(grid, 0, 7.6, 3.0), abs=0.4)
