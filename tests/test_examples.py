@@ -12,6 +12,7 @@ import pytest
 ROOT = Path(__file__).parents[1]
 EXAMPLES = sorted((ROOT / "examples").glob("*.py"))
 PROMISED = {
+    "cleanrl_ppo": r"65536 steps, \d+ episodes, mean return (-[0-9]\.|[0-9])",
     "own_environment": r"the trained agent needs 10 steps",
     "own_family": r"Straight: \d\d",
     "own_lidar": r"exploration: [6-9]\d%.*False\narena: .* True\ncorridor: .*683 beams",

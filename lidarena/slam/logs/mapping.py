@@ -3,14 +3,16 @@
 import time
 from collections.abc import Callable
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.slam.graph.mapper import Loop, MapParameters, Mapper, PoseGraph
 from lidarena.slam.logs.bridges import unbridged, unsure_scans
-from lidarena.slam.logs.carmen import RecordedLog
 from lidarena.slam.logs.mount_check import checked_mount
+from lidarena.slam.logs.reading import read_recording
+from lidarena.slam.logs.recorded_log import RecordedLog
 from lidarena.slam.logs.traced_map import trace_map
 from lidarena.slam.logs.trajectory import Trajectory, in_order, spread_correction
 from lidarena.slam.planar import compose, inverse
@@ -47,7 +49,7 @@ class LogMap:
 
 
 def map_log(
-    log: RecordedLog,
+    log: RecordedLog | str | Path,
     parameters: MapParameters | None = None,
     progress: Progress | None = None,
     resolution: float = CELL,
@@ -57,15 +59,18 @@ def map_log(
     The map and the trajectory are in the frame of the log's odometry at its first scan.
 
     Args:
-        log: As `lidarena.slam.logs.carmen.read_log` gives it.
+        log: A file, or what `lidarena.slam.read_log` made of one.
         parameters: Settings.
         progress: Told now and then how far it is.
         resolution: Side of a cell of the map [m].
 
     Raises:
+        LogError: The file cannot be read.
         EstimatorError: The beams are not evenly spaced.
         MapError: The robot went farther than any map may reach.
     """
+    if not isinstance(log, RecordedLog):
+        log = read_recording(log)
     began = time.process_time()
     unsure = unsure_scans(log)
     mapper, total = Mapper(log.angles, log.max_range, log.mount, parameters), len(log.scan_readings)
