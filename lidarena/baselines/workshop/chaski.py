@@ -4,8 +4,9 @@ from typing import Any
 
 from lidarena.baselines.registry import register
 from lidarena.baselines.workshop.robot_interface import Situation, under_way
-from lidarena.baselines.workshop.stnu import PlanDispatcher
+from lidarena.baselines.workshop.stnu import Ints, PlanDispatcher
 from lidarena.envs.workshop.compiler.networks import CONSISTENT
+from lidarena.envs.workshop.compiler.schedule import Snapshot
 from lidarena.envs.workshop.task import HUMAN
 
 
@@ -36,13 +37,8 @@ class FeasiblePlans(PlanDispatcher):
         super().reset(seed)
         self.stranded = 0
 
-    def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        """Return the number of the robot's next action, or of waiting."""
-        now = Situation.read(info)
-        if not len(now.may):
-            return now.wait
-        snapshot = self.snapshot(now, self._problem, self._motion)
-        plans = self.candidates(now, snapshot)
+    def choose(self, now: Situation, snapshot: Snapshot, plans: Ints) -> int:
+        """Follow the quickest plan that is feasible; where none is, wait."""
         ranked = [] if self._overdue(now) or not len(plans) else self.rank(now, snapshot, plans)
         feasible = [(category, number) for category, number in ranked if category <= CONSISTENT]
         if not feasible:

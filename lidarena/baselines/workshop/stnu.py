@@ -46,6 +46,25 @@ class PlanDispatcher(Scheduler):
         """Begin a new episode."""
         self.category, self.unmatched = CONTROLLABLE, 0
 
+    def act(self, observation: Any, info: dict[str, Any]) -> Any:
+        """Return the number of the robot's next action, or of waiting."""
+        now = Situation.read(info)
+        if not len(now.may):
+            return now.wait
+        snapshot = self.snapshot(now, self._problem, self._motion)
+        plans = self.candidates(now, snapshot)
+        return self.choose(now, snapshot, plans)
+
+    def choose(self, now: Situation, snapshot: Snapshot, plans: Ints) -> int:
+        """The robot's next action, or to wait.
+
+        Args:
+            now: What is seen.
+            snapshot: The same for the compiler.
+            plans: What is left of those that agree with it (K, 2, n), the quickest first.
+        """
+        raise NotImplementedError
+
     def candidates(self, now: Situation, snapshot: Snapshot) -> Ints:
         """What is left of the plans that agree with what was seen (K, 2, n), the quickest first.
 
@@ -107,13 +126,8 @@ class TemporalDispatcher(PlanDispatcher):
         """
         super().__init__(env, motion)
 
-    def act(self, observation: Any, info: dict[str, Any]) -> Any:
-        """Return the number of the robot's next action, or of waiting."""
-        now = Situation.read(info)
-        if not len(now.may):
-            return now.wait
-        snapshot = self.snapshot(now, self._problem, self._motion)
-        plans = self.candidates(now, snapshot)
+    def choose(self, now: Situation, snapshot: Snapshot, plans: Ints) -> int:
+        """Follow the best plan; where none is left take the action of the longest chain."""
         if not len(plans):
             return int(now.may[self.task.arrays.tail[now.may].argmax()])
         if not now.human_acts:
