@@ -50,6 +50,11 @@ def merged(function: Callable[..., Result]) -> Callable[..., Result]:
     return _compiled(function, {**_LEAF, "inline": "always"})
 
 
+def merged_kernel(function: Callable[..., Result]) -> Callable[..., Result]:
+    """The same for a ``kernel``; for those that are handed tuples of many arrays, which cost seconds to pass on."""
+    return _compiled(function, {**_KERNEL, "inline": "always"})
+
+
 def entry_point(function: Callable[..., Result], *arguments: Any) -> Callable[..., Result]:
     """Compile a kernel for arguments of these types; returns what calls it without asking for their types again.
 

@@ -6,7 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import kernel, merged_kernel
 from lidarena.planning.driving.goals import GoalAccounts, is_given_up
 from lidarena.planning.driving.state import Drive
 from lidarena.planning.grid.frontiers import flood_frontiers, measure_frontier, nearest_cell, nearest_free
@@ -86,7 +86,7 @@ def empty_candidates(worlds: int, most: int) -> Candidates:
     )
 
 
-@kernel
+@merged_kernel
 def lengths_from_robot(w: int, drive: Drive) -> NDArray[np.float64]:
     """Length of the way from the robot to every cell of the ground (rows, columns) [m], as of the newest survey."""
     ground = drive.ground
@@ -94,7 +94,7 @@ def lengths_from_robot(w: int, drive: Drive) -> NDArray[np.float64]:
     return ground.way[w, : rows * columns].reshape(rows, columns)
 
 
-@kernel
+@merged_kernel
 def _goal_cells(
     cells: NDArray[np.int32], centre: tuple[float, float], row: int, column: int, reachable: NDArray[np.bool_]
 ) -> tuple[NDArray[np.int64], NDArray[np.float64], float]:
@@ -113,7 +113,7 @@ def _goal_cells(
     return goals, off, math.sqrt(best)
 
 
-@kernel
+@merged_kernel
 def _insert(w: int, way: float, candidates: Candidates) -> int:
     """Make room for a candidate among those of a world, which are kept in the order of their ways; -1 if it is last."""
     most, count = candidates.way.shape[1], int(candidates.number[w])
@@ -143,7 +143,7 @@ def _insert(w: int, way: float, candidates: Candidates) -> int:
     return at
 
 
-@kernel
+@merged_kernel
 def find_frontier_candidates(
     w: int, least: float, lengths: NDArray[np.float64], drive: Drive, accounts: GoalAccounts, candidates: Candidates
 ) -> None:
@@ -205,7 +205,7 @@ def find_frontier_candidates(
         candidates.log_d[w, at], candidates.since[w, at] = 0.0, 0.0
 
 
-@kernel
+@merged_kernel
 def _distance_to_pursued(w: int, cells: NDArray[np.int32], drive: Drive, accounts: GoalAccounts) -> float:
     """Distance in cells from a frontier to the goal that is pursued, inf if none is."""
     if not accounts.has_pursued[w]:
@@ -219,7 +219,7 @@ def _distance_to_pursued(w: int, cells: NDArray[np.int32], drive: Drive, account
     return math.sqrt(best)
 
 
-@kernel
+@merged_kernel
 def add_place(
     w: int,
     x: float,
@@ -250,7 +250,7 @@ def add_place(
     candidates.straight[w, at] = lengths[row, column]
 
 
-@kernel
+@merged_kernel
 def measure_turns(
     w: int, pose: NDArray[np.float64], lengths: NDArray[np.float64], drive: Drive, candidates: Candidates
 ) -> None:
@@ -275,7 +275,7 @@ def _blocks(cost: NDArray[np.float64], reachable: NDArray[np.bool_]) -> NDArray[
     return coarse
 
 
-@kernel
+@merged_kernel
 def measure_ways_between(w: int, radius: float, drive: Drive, candidates: Candidates) -> None:
     """Fill in the ways between the candidates, on blocks of cells.
 

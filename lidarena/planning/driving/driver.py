@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import kernel, merged_kernel
 from lidarena.planning.driving.following import (
     can_loiter,
     clear_queue,
@@ -26,7 +26,7 @@ def sense(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -
     look_around(w, senses, settings, drive)
 
 
-@kernel
+@merged_kernel
 def stop(w: int, drive: Drive) -> None:
     """Give up the goal."""
     drive.has_goal[w] = False
@@ -34,14 +34,14 @@ def stop(w: int, drive: Drive) -> None:
     clear_queue(w, drive)
 
 
-@kernel
+@merged_kernel
 def has_arrived(w: int, senses: Perceptions, drive: Drive) -> bool:
     """Whether the robot is at its goal."""
     away = math.hypot(drive.goal[w, 0] - senses.poses[w, 0], drive.goal[w, 1] - senses.poses[w, 1])
     return bool(drive.has_goal[w]) and away <= ARRIVAL
 
 
-@kernel
+@merged_kernel
 def remaining_way(w: int, senses: Perceptions, drive: Drive) -> float:
     """What remains of the path, from its point nearest to the robot on [m]."""
     path = drive.path[w, : drive.path_points[w]]
@@ -56,7 +56,7 @@ def remaining_way(w: int, senses: Perceptions, drive: Drive) -> float:
     return total
 
 
-@kernel
+@merged_kernel
 def must_plan(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
     """Whether commands have run out before the goal, or something new stands in the way."""
     if not drive.has_goal[w] or has_arrived(w, senses, drive):
@@ -66,7 +66,7 @@ def must_plan(w: int, senses: Perceptions, settings: DriverSettings, drive: Driv
     return not stays_clear(w, senses, settings, drive) or is_path_blocked(w, senses, settings, drive)
 
 
-@kernel
+@merged_kernel
 def is_cornered(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
     """Whether the robot has no room to turn round where it is."""
     return not can_loiter(w, senses.poses[w], drive.near, settings)
@@ -93,7 +93,7 @@ def go(w: int, x: float, y: float, senses: Perceptions, settings: DriverSettings
     return True
 
 
-@kernel
+@merged_kernel
 def _find(w: int, x: float, y: float, drive: Drive) -> NDArray[np.float64]:
     """The cheapest way (n, 2) from the robot to a point, (0, 2) if there is none; cut short where it is very long."""
     ground, frame = drive.ground, drive.ground.frame[w]

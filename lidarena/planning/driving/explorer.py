@@ -10,7 +10,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import kernel, merged_kernel
 from lidarena.planning.driving.candidates import (
     AWAY,
     FRONTIER,
@@ -214,7 +214,7 @@ def advance(
     return ENDS if explorers.finished[w] else DRIVES
 
 
-@kernel
+@merged_kernel
 def _has_ended(w: int, settings: ExplorerSettings, explorers: Explorers) -> bool:
     """Whether it is the end that nothing is left: not at once, and not while anything may be tried again."""
     out_of_reach = explorers.ending[w] == OUT_OF_REACH
@@ -227,7 +227,7 @@ def _has_ended(w: int, settings: ExplorerSettings, explorers: Explorers) -> bool
     return bool(explorers.step[w] - explorers.wanted_at[w] >= patience)
 
 
-@kernel
+@merged_kernel
 def _is_due(
     w: int, senses: Perceptions, driver: DriverSettings, settings: ExplorerSettings, explorers: Explorers
 ) -> bool:
@@ -237,7 +237,7 @@ def _is_due(
     return has_arrived(w, senses, drive) and explorers.accounts.arrived_at[w] < 0
 
 
-@kernel
+@merged_kernel
 def _remember_place(w: int, log_d: float, senses: Perceptions, explorers: Explorers) -> None:
     """Note where the robot is, unless it has been near before."""
     x, y, count = senses.poses[w, 0], senses.poses[w, 1], explorers.place_count[w]
@@ -251,7 +251,7 @@ def _remember_place(w: int, log_d: float, senses: Perceptions, explorers: Explor
     explorers.place_count[w] = count + 1
 
 
-@kernel
+@merged_kernel
 def _find_candidates(w: int, senses: Perceptions, settings: ExplorerSettings, explorers: Explorers) -> None:
     """Fill in the frontiers, the start, and the places nearest by way that the robot knows since long ago."""
     drive, candidates = explorers.drive, explorers.candidates
@@ -269,7 +269,7 @@ def _find_candidates(w: int, senses: Perceptions, settings: ExplorerSettings, ex
     _recognise_place(w, explorers)
 
 
-@kernel
+@merged_kernel
 def _recognise_place(w: int, explorers: Explorers) -> None:
     """Note which candidate is driven to where it is a known place."""
     accounts, candidates = explorers.accounts, explorers.candidates
@@ -280,7 +280,7 @@ def _recognise_place(w: int, explorers: Explorers) -> None:
             candidates.pursued[w] = k
 
 
-@kernel
+@merged_kernel
 def _count_known(w: int, drive: Drive) -> int:
     """Known cells of the newest survey."""
     extent, known = drive.ground.extent[w], 0
@@ -289,7 +289,7 @@ def _count_known(w: int, drive: Drive) -> int:
     return known
 
 
-@kernel
+@merged_kernel
 def _note_growth(w: int, log_d: float, explorers: Explorers) -> None:
     """Count what is known, and note how certain the pose was from which the new part was seen."""
     known = _count_known(w, explorers.drive)
@@ -299,7 +299,7 @@ def _note_growth(w: int, log_d: float, explorers: Explorers) -> None:
         explorers.known[w], explorers.grown_at[w] = known, explorers.step[w]
 
 
-@kernel
+@merged_kernel
 def _nearest_frontier(w: int, candidates: Candidates) -> int:
     """The first of the candidates that is a frontier; -1 if none is."""
     for k in range(candidates.number[w]):
@@ -308,7 +308,7 @@ def _nearest_frontier(w: int, candidates: Candidates) -> int:
     return -1
 
 
-@kernel
+@merged_kernel
 def _has_choice(w: int, settings: ExplorerSettings, explorers: Explorers) -> bool:
     """Whether there is a frontier to choose; notes why, if there is not."""
     explorers.ending[w] = OUT_OF_REACH if explorers.candidates.found[w] else EXPLORED
@@ -321,7 +321,7 @@ def _has_choice(w: int, settings: ExplorerSettings, explorers: Explorers) -> boo
     return True
 
 
-@kernel
+@merged_kernel
 def _is_exhausted(w: int, settings: ExplorerSettings, explorers: Explorers) -> bool:
     """Whether the map has hardly grown for too long."""
     return bool(explorers.step[w] - explorers.grown_at[w] >= settings.fruitless)
@@ -351,7 +351,7 @@ def set_out(w: int, choice: int, senses: Perceptions, driver: DriverSettings, ex
         stop(w, explorers.drive)
 
 
-@kernel
+@merged_kernel
 def _try(w: int, k: int, senses: Perceptions, driver: DriverSettings, explorers: Explorers) -> bool:
     """Set out for a candidate; whether it is settled what to do next."""
     candidates, accounts, drive = explorers.candidates, explorers.accounts, explorers.drive

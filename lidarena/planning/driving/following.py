@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import kernel, merged_kernel
 from lidarena.planning.driving.state import Drive, DriverSettings, KnownGround, Perceptions
 from lidarena.planning.driving.survey import points_around
 from lidarena.planning.grid.guard import is_safe, turn_in_place, way_out
@@ -24,36 +24,36 @@ _HORIZON = 8  # commands that are checked ahead
 _MOST_STATES = 6000.0
 
 
-@kernel
+@merged_kernel
 def _gap(ground: KnownGround, w: int) -> NDArray[np.float32]:
     rows, columns = ground.extent[w, 2], ground.extent[w, 3]
     return ground.gap[w, : rows * columns].reshape(rows, columns)
 
 
-@kernel
+@merged_kernel
 def _closed(ground: KnownGround, w: int) -> NDArray[np.bool_]:
     rows, columns = ground.extent[w, 2], ground.extent[w, 3]
     return ground.closed[w, : rows * columns].reshape(rows, columns)
 
 
-@kernel
+@merged_kernel
 def _queue(w: int, drive: Drive) -> NDArray[np.int64]:
     return drive.queue[w, drive.queue_span[w, 0] : drive.queue_span[w, 1]]
 
 
-@kernel
+@merged_kernel
 def clear_queue(w: int, drive: Drive) -> None:
     """Forget the commands that are still to come."""
     drive.queue_span[w, 0] = drive.queue_span[w, 1] = 0
 
 
-@kernel
+@merged_kernel
 def has_queue(w: int, drive: Drive) -> bool:
     """Whether commands are still to come."""
     return bool(drive.queue_span[w, 1] > drive.queue_span[w, 0])
 
 
-@kernel
+@merged_kernel
 def is_clear(
     w: int, pose: NDArray[np.float64], ground: KnownGround, settings: DriverSettings, drive: Drive, n: int
 ) -> bool:
@@ -64,19 +64,19 @@ def is_clear(
     return bool(least >= min(drive.kept[w] - TOLERANCE, max(here, 0.0) - 0.01))
 
 
-@kernel
+@merged_kernel
 def stays_clear(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
     """Whether the next planned commands keep clear of what is near."""
     return is_clear(w, senses.poses[w], drive.near, settings, drive, _HORIZON)
 
 
-@kernel
+@merged_kernel
 def _room(w: int, command: int, pose: NDArray[np.float64], ground: KnownGround, settings: DriverSettings) -> float:
     velocity = settings.commands.velocities[command]
     return loiter_gap(_gap(ground, w), _closed(ground, w), ground.frame[w], pose, velocity)
 
 
-@kernel
+@merged_kernel
 def can_loiter(w: int, pose: NDArray[np.float64], ground: KnownGround, settings: DriverSettings) -> bool:
     """Whether there is room to drive a circle, in narrow places."""
     most = -np.inf
@@ -86,7 +86,7 @@ def can_loiter(w: int, pose: NDArray[np.float64], ground: KnownGround, settings:
     return bool(most >= settings.margins[1])
 
 
-@kernel
+@merged_kernel
 def next_command(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> int:
     """The next planned command if what the beams have hit says that it is safe, else a turn, or the way out."""
     points = points_around(w, senses, settings, drive)
@@ -108,14 +108,14 @@ def next_command(w: int, senses: Perceptions, settings: DriverSettings, drive: D
     return int(drive.given[w])
 
 
-@kernel
+@merged_kernel
 def _enqueue(w: int, sequence: NDArray[np.int64], kept: float, drive: Drive) -> None:
     count = min(len(sequence), drive.queue.shape[1])
     drive.queue[w, :count] = sequence[:count]
     drive.queue_span[w, 0], drive.queue_span[w, 1], drive.kept[w] = 0, count, kept
 
 
-@kernel
+@merged_kernel
 def _leads_to(
     w: int, path: NDArray[np.float64], pose: NDArray[np.float64], settings: DriverSettings, drive: Drive
 ) -> bool:
@@ -174,7 +174,7 @@ def plan_commands(
     return found
 
 
-@kernel
+@merged_kernel
 def is_path_blocked(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
     """Whether there is no path, or what is near blocks it."""
     count = drive.path_points[w]

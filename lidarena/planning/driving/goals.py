@@ -5,7 +5,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import kernel
+from lidarena.base.jit import kernel, merged_kernel
 
 SAME_GOAL = 0.25
 """Goals nearer to each other than this, in x and in y, are one [m]: explore_lite's five cells."""
@@ -77,7 +77,7 @@ def open_accounts(accounts: GoalAccounts, world: int) -> None:
     accounts.arrived_at[world], accounts.shortest[world] = -1, np.inf
 
 
-@kernel
+@merged_kernel
 def _is_same(x: float, y: float, goal: NDArray[np.float64]) -> bool:
     return bool(abs(x - goal[0]) < SAME_GOAL and abs(y - goal[1]) < SAME_GOAL)
 
@@ -91,7 +91,7 @@ def is_given_up(w: int, x: float, y: float, accounts: GoalAccounts) -> bool:
     return False
 
 
-@kernel
+@merged_kernel
 def give_up(w: int, x: float, y: float, accounts: GoalAccounts) -> None:
     """Never try a goal again."""
     slot = accounts.given_up_count[w] % _MOST
@@ -108,7 +108,7 @@ def pursue(w: int, x: float, y: float, step: int, accounts: GoalAccounts) -> Non
         accounts.arrived_at[w], accounts.progress_at[w], accounts.shortest[w] = -1, step, np.inf
 
 
-@kernel
+@merged_kernel
 def watch(
     w: int, remaining: float, arrived: bool, step: int, timeout: int, patience: int, accounts: GoalAccounts
 ) -> None:
@@ -151,7 +151,7 @@ def fail(w: int, x: float, y: float, for_good: bool, accounts: GoalAccounts) -> 
     return False
 
 
-@kernel
+@merged_kernel
 def pardon(w: int, known: int, accounts: GoalAccounts) -> bool:
     """Let goals be tried again that were given up from afar; whether there are any.
 

@@ -5,7 +5,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import inlined, kernel, leaf
+from lidarena.base.jit import inlined, kernel, leaf, merged_kernel
 from lidarena.planning.driving.state import (
     ESCAPE,
     INFLATED,
@@ -27,7 +27,7 @@ _OCCUPIED = 50
 _WEIGHT, _RATE = 5.0, 10.0  # of the inflation, as in Inflation
 
 
-@kernel
+@merged_kernel
 def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> None:
     """Note where the newest scan of a world hit something nearby, in place of the oldest that is remembered."""
     if drive.given[w] >= 0:
@@ -54,7 +54,7 @@ def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: 
     drive.hit_counts[w, slot] = count
 
 
-@kernel
+@merged_kernel
 def points_around(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> NDArray[np.float64]:
     """What a world's robot must keep clear of, (n, 2) in its own frame [m]: what beams have hit.
 
@@ -77,7 +77,7 @@ def points_around(w: int, senses: Perceptions, settings: DriverSettings, drive: 
     return points if settings.all_around else np.concatenate((points, _occupied_around(w, senses, drive)))
 
 
-@kernel
+@merged_kernel
 def _occupied_around(w: int, senses: Perceptions, drive: Drive) -> NDArray[np.float64]:
     rows, columns, frame = drive.near.extent[w, 2], drive.near.extent[w, 3], drive.near.frame[w]
     found, count = np.empty((rows * columns, 2)), 0
@@ -114,7 +114,7 @@ def _fill_gaps(
         closed[k] = occupancy[k] < 0 or occupancy[k] >= _OCCUPIED
 
 
-@kernel
+@merged_kernel
 def _fill(
     w: int, senses: Perceptions, settings: DriverSettings, drive: Drive, ground: KnownGround
 ) -> NDArray[np.int32]:
@@ -142,7 +142,7 @@ def _fill(
     return squares
 
 
-@kernel
+@merged_kernel
 def look_around(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> None:
     """Fill in the window around the robot of a world."""
     near, side = drive.near, settings.resolution
@@ -180,7 +180,7 @@ def survey(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) 
     return True
 
 
-@kernel
+@merged_kernel
 def _fill_costs(w: int, squares: NDArray[np.int32], settings: DriverSettings, ground: KnownGround) -> None:
     """Fill in what entering the cells costs: one of as many numbers as there are squared distances."""
     lethal, inflated = LETHAL + settings.extra, INFLATED + settings.extra
@@ -199,7 +199,7 @@ def _look_up(
         cost[k] = np.inf if closed[k] else costs[squares[k]]
 
 
-@kernel
+@merged_kernel
 def _crop(grid: NDArray[np.int8], extent: NDArray[np.int64]) -> bool:
     """The lines that contain anything known, and one more on either side for the frontiers."""
     rows, columns = grid.shape
@@ -240,7 +240,7 @@ def _open(
                 cost[r, c] = 1.0 + _WEIGHT * (ESCAPE_BASE + ESCAPE_SLOPE * depth)
 
 
-@kernel
+@merged_kernel
 def _connect(w: int, ground: KnownGround) -> None:
     """Measure the ways from the robot's cell, and mark what can be reached from it.
 
