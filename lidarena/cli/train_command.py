@@ -78,7 +78,11 @@ def _train_seeds(config: "TrainingConfig", options: argparse.Namespace) -> int:
     from lidarena import agents
 
     engine: Engine = options.engine or "processes"
-    folders = agents.train_seeds(config, _seeds_of(options.seeds), engine, options.ray_address, print)
+    try:
+        folders = agents.train_seeds(config, _seeds_of(options.seeds), engine, options.ray_address, print)
+    except KeyboardInterrupt:
+        print("interrupted; the seeds named above are trained, of the others nothing was written", file=sys.stderr)
+        return 130
     print(f"policies: {', '.join(map(str, folders))}")
     return 0
 

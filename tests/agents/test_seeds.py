@@ -45,3 +45,12 @@ def test_options_that_do_not_go_together(capsys: pytest.CaptureFixture[str]) -> 
         with pytest.raises(SystemExit) as end:
             main(["train", *arguments])
         assert end.value.code == 2 and "--seeds" in capsys.readouterr().err
+
+
+def test_an_interruption_says_what_is_kept(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+    def interrupted(*_: object) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("lidarena.agents.seeds.train_seeds", interrupted)
+    assert main(["train", "quick", "--seeds", "0..1"]) == 130
+    assert "the seeds named above are trained" in capsys.readouterr().err
