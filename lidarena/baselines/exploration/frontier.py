@@ -9,7 +9,7 @@ import numpy as np
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import check_range
 from lidarena.baselines.exploration.driving import Driver, Terrain
-from lidarena.baselines.exploration.goal_tracker import Goal, GoalBlacklist
+from lidarena.baselines.exploration.goal_tracker import Goal, GoalBlacklist, is_same
 from lidarena.baselines.exploration.robot_interface import Robot
 from lidarena.baselines.registry import register
 from lidarena.planning.driving.explorer import ENDINGS, EXPLORED, FRUITLESS, OUT_OF_REACH, UNFINISHED
@@ -251,9 +251,7 @@ class FrontierPolicy:
         in known ground, and the robot would drive back there again and again.
         """
         if self._runs_around(frontier, terrain.around.resolution):
-            row, col = self._ahead(frontier, terrain)
-            x, y = terrain.around.points(np.array([nearest_cell(terrain.reachable, row, col)]))[0]
-            yield float(x), float(y)
+            yield from self._ahead(frontier, terrain)
             return
         row, col = frontier.cells[np.argmin(((frontier.cells - np.array(terrain.cell)) ** 2).sum(axis=1))].tolist()
         for cell, wanted in (
@@ -264,14 +262,20 @@ class FrontierPolicy:
                 x, y = terrain.around.points(np.array([cell]))[0]
                 yield float(x), float(y)
 
-    def _ahead(self, frontier: Frontier, terrain: Terrain) -> tuple[float, float]:
-        """The cell of a frontier that is nearest to the robot, of equally near ones the one that lies ahead of it."""
+    def _ahead(self, frontier: Frontier, terrain: Terrain) -> Iterator[Goal]:
+        """Where a frontier is near to the robot, the nearest place first, of equally near ones what lies ahead of it."""
         offsets = frontier.cells - np.array(terrain.cell)
         away = np.hypot(offsets[:, 0], offsets[:, 1]) * terrain.around.resolution
         turn = np.arctan2(offsets[:, 0], offsets[:, 1]) - self.driver.pose[2]
         turn = np.abs((turn + math.pi) % (2.0 * math.pi) - math.pi)
-        row, col = frontier.cells[np.argmin(away + _TURNING * turn)].tolist()
-        return float(row), float(col)
+        order = np.argsort(away + _TURNING * turn, kind="stable")
+        tried: list[Goal] = []
+        for (row, col), place in zip(frontier.cells[order], terrain.around.points(frontier.cells[order]), strict=True):
+            if any(is_same((place[0], place[1]), other) for other in tried):
+                continue
+            tried.append((place[0], place[1]))
+            x, y = terrain.around.points(np.array([nearest_cell(terrain.reachable, row, col)]))[0]
+            yield float(x), float(y)
 
     def _runs_around(self, frontier: Frontier, resolution: float) -> bool:
         """Whether a frontier is longer than the lidar sees at once and its middle is far from all of it."""

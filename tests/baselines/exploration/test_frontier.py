@@ -297,3 +297,21 @@ def test_a_hall_wider_than_the_lidar_sees_is_not_crossed_again_and_again():
     env = FakeExploration(hall, (1.0, 1.0, 0.7))
     info, _ = explore(env, make("frontier", env), 800)
     assert info["completeness"] > 0.85 and info["path_length"] < 60.0
+
+
+def test_where_nothing_new_is_seen_at_one_place_of_a_long_frontier_it_goes_to_another():
+    hall = np.ones((280, 280), bool)
+    hall[6:-6, 6:-6] = False
+    env = FakeExploration(hall, (7.0, 7.0, 0.7))
+    policy = make("frontier", env)
+    observation, info = env.reset()
+    policy.reset()
+    map_of_the_start, goals = info["map"].copy(), set()
+    for _ in range(400):  # the map of a filter that lays scans elsewhere than where it believes the robot to be
+        info["map"] = map_of_the_start
+        observation, _, _, _, info = env.step(policy.act(observation, info))
+        if policy.driver.goal is not None:
+            goals.add(policy.driver.goal)
+        assert not policy.finished
+    apart = np.array(sorted(goals))
+    assert np.hypot(*(apart.max(axis=0) - apart.min(axis=0))) > 2.0
