@@ -114,7 +114,8 @@ def run_tasks(
     Args:
         tasks: What to run.
         workers: Processes; one per available core if None. With one, everything runs in this process.
-        advance: Called in this process after each episode, in the order in which they end.
+        advance: Called in this process after each episode, in the order in which they end. Those of one seed run one
+            after the other, since what a process keeps of a world it has drawn serves them all.
         engine: ``"processes"`` of this machine, or ``"ray"``.
         ray_address: Of the cluster, see ``lidarena.base.ray_cluster.ray_results``.
 
@@ -126,17 +127,20 @@ def run_tasks(
         EpisodeError: A task raised, or a process died (on a cluster twice). What had not begun is dropped.
     """
     count = min(workers or available_cores(), max(1, len(tasks)))
+    order = sorted(range(len(tasks)), key=lambda index: tasks[index].seed)
+    queue = [tasks[index] for index in order]
     pool: AbstractContextManager[Iterator[tuple[int, Episode | _Failure]]]
     if engine == "ray":
-        pool = closing(_in_cluster(tasks, count, ray_address))
+        pool = closing(_in_cluster(queue, count, ray_address))
     else:
-        pool = _in_processes(tasks, count) if count > 1 else nullcontext(_in_this_process(tasks))
+        pool = _in_processes(queue, count) if count > 1 else nullcontext(_in_this_process(queue))
     episodes: dict[int, Episode] = {}
     with _single_threaded(), pool as outcomes:
-        for index, outcome in outcomes:
-            episodes[index] = outcome if isinstance(outcome, Episode) else _without(tasks[index], outcome)
+        for place, outcome in outcomes:
+            task = queue[place]
+            episodes[order[place]] = outcome if isinstance(outcome, Episode) else _without(task, outcome)
             if advance:
-                advance(tasks[index])
+                advance(task)
     return [episodes[index] for index in range(len(tasks))]
 
 
