@@ -39,12 +39,12 @@ class FeasiblePlans(PlanDispatcher):
 
     def choose(self, now: Situation, snapshot: Snapshot, plans: Ints) -> int:
         """Follow the quickest plan that is feasible; where none is, wait."""
-        ranked = [] if self._overdue(now) or not len(plans) else self.rank(now, snapshot, plans)
-        feasible = [(category, number) for category, number in ranked if category <= CONSISTENT]
-        if not feasible:
+        ranked = iter(()) if self._overdue(now) else self.categories(now, snapshot, plans)
+        feasible = next((one for one in ranked if one[0] <= CONSISTENT), None)
+        if feasible is None:
             self.stranded += 1
             return now.wait
-        self.category, best = min(feasible, key=lambda one: one[1])
+        self.category, best = feasible
         return self.next_of(now, plans[best])
 
     def _overdue(self, now: Situation) -> bool:

@@ -1,5 +1,6 @@
 """The dispatcher of Strassmair and Taylor: drop the plans that contradict what was seen, update, rank, act."""
 
+from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,7 @@ from lidarena.base.keyword_checks import check_switch
 from lidarena.baselines.registry import register
 from lidarena.baselines.workshop.robot_interface import Scheduler, Situation, under_way
 from lidarena.envs.workshop.compiler.compiled import CompiledTask, compile_task
-from lidarena.envs.workshop.compiler.networks import CONTROLLABLE, categorize, plan_network
+from lidarena.envs.workshop.compiler.networks import CONTROLLABLE, INCONSISTENT, categorize, plan_network
 from lidarena.envs.workshop.compiler.schedule import Snapshot, predict, predict_all, search_plans
 from lidarena.envs.workshop.task import HUMAN, ROBOT
 
@@ -20,6 +21,8 @@ CHECKED = 12
 """Of the plans that agree with what was seen, the networks of so many are checked, those of least makespan first."""
 _NODES = 20_000
 """Beginnings of plans that a search looks at in one decision."""
+_HARDLY = 1e-6
+"""A deadline is missed from so long after it on [s]: the checks' own tolerance."""
 
 
 class PlanDispatcher(Scheduler):
@@ -92,15 +95,24 @@ class PlanDispatcher(Scheduler):
 
     def rank(self, now: Situation, snapshot: Snapshot, plans: Ints) -> list[tuple[int, int]]:
         """Category and number of the plans that come into question, the best first: until one is controllable."""
-        running = {action: self.left_of(now, action) for action in under_way(now).tolist()}
         found = []
-        for number, plan in enumerate(plans[:CHECKED]):
-            schedule = predict(self._problem, snapshot, plan)
-            network = plan_network(self.task, plan, schedule, snapshot, now.time, running)
-            found.append((categorize(network), number))
-            if found[-1][0] == CONTROLLABLE:
+        for category, number in self.categories(now, snapshot, plans):
+            found.append((category, number))
+            if category == CONTROLLABLE:
                 break
         return sorted(found)
+
+    def categories(self, now: Situation, snapshot: Snapshot, plans: Ints) -> Iterator[tuple[int, int]]:
+        """Category and number of the plans that come into question, one after the other."""
+        running = {action: self.left_of(now, action) for action in under_way(now).tolist()}
+        is_late = now.time > self.task.deadline + _HARDLY  # then no network is consistent
+        for number, plan in enumerate(plans[:CHECKED]):
+            if is_late:
+                yield INCONSISTENT, number
+                continue
+            schedule = predict(self._problem, snapshot, plan)
+            network = plan_network(self.task, plan, schedule, snapshot, now.time, running)
+            yield categorize(network), number
 
     def next_of(self, now: Situation, plan: Ints) -> int:
         """The robot's next action by a plan; to wait if it has none that may begin."""
