@@ -8,11 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.errors import VisionError
-from lidarena.base.jit import kernel
+from lidarena.base.jit import kernel, leaf
 from lidarena.base.random_streams import normal
 from lidarena.vision.camera import StereoCamera
 from lidarena.vision.seabed import Seabed
-from lidarena.vision.texture import HeightGrid, TextureTile, blended_texture, surface
+from lidarena.vision.texture import HeightGrid, TextureTile, blended_texture, height_at, surface
 from lidarena.vision.water import Water
 
 Floats = NDArray[np.float64]
@@ -23,6 +23,8 @@ _FARTHEST, _ENTRIES = 64.0, 4096
 _STILL, _CLOSE = 8, 1e-3
 """Newton's steps a pixel at most, and the height above the ground from which the next one arrives [m]: the error is of
 the second order, some micrometres."""
+_LEAST_STEP = 0.005
+"""Shortest step along a ray of which Newton's method has lost sight [m]."""
 _FADE = 1.5
 """Levels over which the finest texture fades out."""
 _LEAST = 0.05
@@ -115,6 +117,31 @@ def _optics_of(camera: StereoCamera, water: Water) -> _Optics:
     return _Optics(light, veil, clear, lod, water.noise)
 
 
+@leaf
+def _first_hit(grid: HeightGrid, place: Floats, dx: float, dy: float, dz: float) -> float:
+    """Depth at which a ray first meets the seabed [m], to a tenth of a millimetre; 0 if it does not.
+
+    Where a slope hides what is behind it, Newton's method jumps to and fro between the two. Steps of half the height
+    above the ground miss nothing unless that is steeper than the ray.
+    """
+    above, depth = 0.0, 0.0
+    while depth < _FARTHEST:
+        gap = place[2] + depth * dz - height_at(grid, place[0] + depth * dx, place[1] + depth * dy)
+        if gap <= 0.0:
+            break
+        above = depth
+        depth += max(0.5 * gap, _LEAST_STEP)
+    if depth == 0.0 or depth >= _FARTHEST:
+        return 0.0
+    while depth - above > 1e-4:
+        middle = 0.5 * (above + depth)
+        if place[2] + middle * dz > height_at(grid, place[0] + middle * dx, place[1] + middle * dy):
+            above = middle
+        else:
+            depth = middle
+    return 0.5 * (above + depth)
+
+
 @kernel
 def _render(
     grid: HeightGrid,
@@ -151,8 +178,12 @@ def _render(
                 depth -= gap / min(dz - slope_x * dx - slope_y * dy, -0.15)
                 if abs(gap) < _CLOSE:
                     break
-            if not 0.0 < depth < _FARTHEST or abs(gap) > 0.05:
-                return False
+            if not 0.0 < depth < _FARTHEST or abs(gap) > _CLOSE:
+                depth = _first_hit(grid, place, dx, dy, dz)
+                if depth <= 0.0:
+                    return False
+                _, _, _, shade = surface(grid, place[0] + depth * dx, place[1] + depth * dy)
+                growth, before = 0.0, depth
             if column == 0:
                 line_depth = depth
             else:

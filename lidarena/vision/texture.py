@@ -10,6 +10,8 @@ from lidarena.base.jit import inlined, leaf
 
 _SMALLEST = 8
 """Side of the coarsest level of a texture [texels]."""
+_ONE = np.uint64(1)
+"""Cells are counted without a sign: an index that might be negative costs a comparison."""
 
 
 class HeightGrid(NamedTuple):
@@ -56,12 +58,12 @@ def mip_chain(grey: NDArray[np.float64], texel: float) -> TextureTile:
 @inlined
 def surface(grid: HeightGrid, x: float, y: float) -> tuple[float, float, float, float]:
     """Height [m], its slopes along x and y, and the shade at a point, bilinear in the cell."""
-    relief, mask = grid.relief, grid.relief.shape[0] - 1
+    relief, mask = grid.relief, np.uint64(grid.relief.shape[0] - 1)
     across, up = x * grid.density, y * grid.density
     column, row = math.floor(across), math.floor(up)
     a, b = across - column, up - row
-    j, i = np.int64(column) & mask, np.int64(row) & mask
-    k, l = (j + 1) & mask, (i + 1) & mask  # noqa: E741 - the cell's other corner
+    j, i = np.uint64(np.int64(column)) & mask, np.uint64(np.int64(row)) & mask
+    k, l = (j + _ONE) & mask, (i + _ONE) & mask  # noqa: E741 - the cell's other corner
     h00, h01, h10, h11 = (
         float(relief[i, j, 0]), float(relief[i, k, 0]), float(relief[l, j, 0]), float(relief[l, k, 0])
     )  # fmt: skip
@@ -82,15 +84,15 @@ def height_at(grid: HeightGrid, x: float, y: float) -> float:
 @inlined
 def texture_at(tile: TextureTile, x: float, y: float, level: int) -> np.float32:
     """Grey of one level of a texture at a point [m], bilinear between the centres of its texels."""
-    size = tile.size >> level
-    mask = size - 1
+    size = np.uint64(tile.size >> level)
+    mask = size - _ONE
     density = tile.density[level]
     across, up = x * density - 0.5, y * density - 0.5
     column, row = math.floor(across), math.floor(up)
     a, b = np.float32(across - column), np.float32(up - row)
-    j, i = np.int64(column) & mask, np.int64(row) & mask
-    k, l = (j + 1) & mask, (i + 1) & mask  # noqa: E741
-    first, texels = tile.first[level], tile.texels
+    j, i = np.uint64(np.int64(column)) & mask, np.uint64(np.int64(row)) & mask
+    k, l = (j + _ONE) & mask, (i + _ONE) & mask  # noqa: E741
+    first, texels = np.uint64(tile.first[level]), tile.texels
     t00, t01 = np.float32(texels[first + i * size + j]), np.float32(texels[first + i * size + k])
     t10, t11 = np.float32(texels[first + l * size + j]), np.float32(texels[first + l * size + k])
     bottom, top = t00 + a * (t01 - t00), t10 + a * (t11 - t10)

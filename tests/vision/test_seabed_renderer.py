@@ -8,7 +8,8 @@ import pytest
 from lidarena.base.errors import VisionError
 from lidarena.vision.features import track
 from lidarena.vision.rigid_motion import inverse, moved
-from lidarena.vision.seabed_renderer import downward_pose, render_pair
+from lidarena.vision.seabed import make_seabed
+from lidarena.vision.seabed_renderer import _first_hit, downward_pose, render_pair
 from lidarena.vision.water import CLEAR, Water
 from tests.vision.scenes import CAMERA, pair_at, pose_at, seabed, stream
 
@@ -81,3 +82,17 @@ def test_a_downward_pose_has_the_images_top_ahead() -> None:
 def test_a_camera_where_it_cannot_be_is_refused(pose: np.ndarray, words: str) -> None:
     with pytest.raises(VisionError, match=words):
         render_pair(seabed(), CAMERA, pose, CLEAR, stream())
+
+
+def test_rays_end_at_what_they_meet_first_where_slopes_hide_what_is_behind() -> None:
+    steep = make_seabed(np.random.default_rng(4), relief=6.0, area=(0.0, 0.0, 12.0, 12.0), longest=12.0)
+    pose = downward_pose(6.0, 6.0, steep.height(6.0, 6.0) + 1.2, heading=0.4)
+    image, _ = render_pair(steep, CAMERA, pose, CLEAR, stream())
+    assert image.std() > 5.0
+    depths, first = np.arange(0.0, 20.0, 0.002), []
+    for u, v in np.random.default_rng(5).uniform((0, 0), (600, 400), (60, 2)):
+        ray = pose[:3, :3] @ ((u - CAMERA.center_x) / CAMERA.focal, (v - CAMERA.center_y) / CAMERA.focal, 1.0)
+        below = [z <= steep.height(x, y) for x, y, z in pose[:3, 3] + depths[:, None] * ray]
+        first.append((depths[int(np.argmax(below))], _first_hit(steep.grid, pose[:3, 3].copy(), *ray)))
+    expected, found = np.array(first).T
+    assert np.abs(found - expected).max() < 0.005

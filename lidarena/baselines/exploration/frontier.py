@@ -263,7 +263,7 @@ class FrontierPolicy:
                 yield float(x), float(y)
 
     def _ahead(self, frontier: Frontier, terrain: Terrain) -> Iterator[Goal]:
-        """Where a frontier is near to the robot, the nearest place first, of equally near ones what lies ahead of it."""
+        """Where a frontier is near to the robot, the nearest place first, of equally near ones what lies ahead."""
         offsets = frontier.cells - np.array(terrain.cell)
         away = np.hypot(offsets[:, 0], offsets[:, 1]) * terrain.around.resolution
         turn = np.arctan2(offsets[:, 0], offsets[:, 1]) - self.driver.pose[2]
