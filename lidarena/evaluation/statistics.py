@@ -13,7 +13,8 @@ Every table of this project quotes a mean with a 95% interval over episodes. The
 import math
 import warnings
 from collections.abc import Callable
-from typing import Literal, NamedTuple
+from functools import lru_cache
+from typing import Any, Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -27,6 +28,10 @@ RESAMPLES = 10_000
 LEVEL = 0.95
 LEAST_SAMPLES = 5
 """Below this, resampling knows too little of the scatter: the "95%" of two samples hold the mean half of the time."""
+
+
+_MANY = 1000
+"""Above so many samples the resamples are not counted once for all: that would take more than 80 MB."""
 
 
 class Interval(NamedTuple):
@@ -95,10 +100,13 @@ def bootstrap(
     for way in ("BCa", "percentile") if method == "bca" else ("percentile",):
         with warnings.catch_warnings(), np.errstate(divide="ignore", invalid="ignore"):
             warnings.simplefilter("ignore", stats.DegenerateDataWarning)  # the bounds are NaN then
+            rounded = _without_rounding(statistic, values)
+            drawn: Any = _resampled_means(values, rounded, seed, resamples) if statistic is mean else None
             found = stats.bootstrap(
                 (values,),
-                _without_rounding(statistic, values),
-                n_resamples=resamples,
+                rounded,
+                n_resamples=resamples if drawn is None else 0,
+                bootstrap_result=drawn,
                 vectorized=True,
                 confidence_level=level,
                 method=way,
@@ -107,6 +115,32 @@ def bootstrap(
         if np.isfinite(found).all():
             break
     return Interval(estimate, float(found.low), float(found.high))
+
+
+class _Resampled(NamedTuple):
+    """What SciPy takes over of a bootstrap that was drawn before."""
+
+    bootstrap_distribution: Floats
+
+
+def _resampled_means(values: Floats, rounded: Callable[..., Floats], seed: int, resamples: int) -> _Resampled | None:
+    """The means of the resamples that SciPy would draw; None for samples too large for it.
+
+    Which episodes are drawn depends on how many there are and the seed alone, so a comparison counts them once, and
+    each of its hundreds of means is a product of matrices.
+    """
+    if values.size > _MANY:
+        return None
+    means = _counts_of_resamples(values.size, seed, resamples) @ values / values.size
+    return _Resampled(rounded(means[:, None]))
+
+
+@lru_cache(maxsize=2)
+def _counts_of_resamples(size: int, seed: int, resamples: int) -> Floats:
+    """How often each of ``size`` samples is in each resample (resamples, size)."""
+    drawn = np.random.default_rng(seed).integers(0, size, (resamples, size))
+    drawn += size * np.arange(resamples)[:, None]
+    return np.bincount(drawn.ravel(), minlength=resamples * size).reshape(resamples, size).astype(np.float64)
 
 
 def _without_rounding(statistic: Statistic, values: Floats) -> Callable[..., Floats]:

@@ -138,3 +138,10 @@ def test_paired_share_difference_lies_in_its_interval_and_changes_sign_with_the_
 def test_paired_share_difference_of_few_episodes_is_uncertain() -> None:
     assert paired_share_difference([1.0, 1.0], [0.0, 0.0]).low < 0.1
     assert paired_share_difference(np.ones(20), np.zeros(20)).low > 0.6
+
+
+@pytest.mark.parametrize("size", [6, 40, 999, 1001])
+def test_the_mean_is_resampled_as_any_other_statistic_is(size: int) -> None:
+    sample = np.random.default_rng(size).gamma(2.0, 3.0, size)
+    quick, plain = bootstrap(sample, seed=4), bootstrap(sample, lambda drawn: np.mean(drawn, axis=-1), seed=4)
+    np.testing.assert_allclose(quick, plain, rtol=1e-9)
