@@ -5,6 +5,7 @@ import os
 import socket
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from pathlib import Path
 from typing import Any, TypeVar
 
 from lidarena.base.errors import ConfigError
@@ -53,8 +54,11 @@ def ray_results(
         ConfigError: Ray is not installed, or no cluster answers.
         ClusterError: A worker or node ended twice over the same item.
     """
+    place = address or os.environ.get("RAY_ADDRESS")
+    if place is not None:
+        _offer_token()
     ray = _import_ray()
-    with _connection(ray, address or os.environ.get("RAY_ADDRESS"), cores, dict(environment or {})):
+    with _connection(ray, place, cores, dict(environment or {})):
         remote = ray.remote(num_cpus=1, max_retries=1)(_call)
         waiting = {remote.remote(work, item): index for index, item in enumerate(items)}
         try:
@@ -69,6 +73,13 @@ def ray_results(
 
 def _call(work: Callable[[Item], Result], item: Item) -> Result:
     return work(item)
+
+
+def _offer_token() -> None:
+    """Show a cluster the token that there is: those that ``ray start`` begins ask for it, and Ray waits to be told."""
+    names = ("RAY_AUTH_TOKEN", "RAY_AUTH_TOKEN_PATH")
+    if (Path.home() / ".ray" / "auth_token").is_file() or any(os.environ.get(name) for name in names):
+        os.environ.setdefault("RAY_AUTH_MODE", "token")
 
 
 def _import_ray() -> Any:
@@ -99,6 +110,8 @@ def _connection(ray: Any, address: str | None, cores: int | None, environment: d
             ray.init(**options)
         except (ConnectionError, RuntimeError, TimeoutError, ValueError) as error:
             reason = str(error).strip().splitlines()[0] if str(error).strip() else type(error).__name__
+            if "AuthToken" in str(error) or "uthentication" in str(error):
+                reason = "it asks for a token; copy ~/.ray/auth_token from the machine on which it was started"
             raise ConfigError(f"no Ray cluster is to be had at {address!r}: {reason}") from None
     try:
         yield
