@@ -11,8 +11,9 @@
 They are imported when they are used for the first time.
 """
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from lidarena.base.lazy_names import lazy_names
 
 if TYPE_CHECKING:
     from lidarena.slam.graph.mapper import MapParameters, Mapper
@@ -23,22 +24,14 @@ if TYPE_CHECKING:
 
 __all__ = ["LogOptions", "MapParameters", "Mapper", "map_log", "read_log", "save_log_map"]
 
-_HOMES = {
-    "LogOptions": ("lidarena.slam.logs.recorded_log", "LogOptions"),
-    "MapParameters": ("lidarena.slam.graph.mapper", "MapParameters"),
-    "Mapper": ("lidarena.slam.graph.mapper", "Mapper"),
-    "map_log": ("lidarena.slam.logs.mapping", "map_log"),
-    "read_log": ("lidarena.slam.logs.reading", "read_recording"),
-    "save_log_map": ("lidarena.slam.logs.map_files", "save_log_map"),
-}
-
-
-def __getattr__(name: str) -> Any:
-    if name not in _HOMES:
-        raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
-    module, inner = _HOMES[name]
-    return getattr(import_module(module), inner)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "LogOptions": "lidarena.slam.logs.recorded_log",
+        "MapParameters": "lidarena.slam.graph.mapper",
+        "Mapper": "lidarena.slam.graph.mapper",
+        "map_log": "lidarena.slam.logs.mapping",
+        "read_log": "lidarena.slam.logs.reading:read_recording",
+        "save_log_map": "lidarena.slam.logs.map_files",
+    },
+)

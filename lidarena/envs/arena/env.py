@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.arena.episodes import ArenaEpisodes
 from lidarena.envs.arena.options import ArenaKeywords, ArenaOptions
-from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.world.floorplan import Floorplan
 
@@ -184,3 +184,6 @@ class BatchedArena(BatchedWorlds):
     def step_length(self) -> float:
         """What a robot drives in a decision period [m]."""
         return float(self.episodes.core.step_length)
+
+
+make_single = entry_point(ArenaEnv)

@@ -1,12 +1,14 @@
 """Teams of robots on a floor plan: the corridor family."""
 
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from lidarena.base.errors import ConfigError
-from lidarena.envs.base_env import entry_point
-from lidarena.envs.corridor.central_env import BatchedCorridor, CorridorCentralEnv
-from lidarena.envs.corridor.shared_env import SharedCorridor
+from lidarena.base.lazy_names import lazy_names
 from lidarena.envs.registration import Family, Registration
+
+if TYPE_CHECKING:
+    from lidarena.envs.corridor.central_env import BatchedCorridor, CorridorCentralEnv
+    from lidarena.envs.corridor.shared_env import SharedCorridor
 
 __all__ = ["FAMILY", "BatchedCorridor", "CorridorCentralEnv", "SharedCorridor"]
 
@@ -16,10 +18,7 @@ SHARED_ID = "lidarena/CorridorShared-v0"
 """Of the batch of robots that share a policy; there is no single environment of them."""
 
 
-make_single = entry_point(CorridorCentralEnv)
-
-
-def refuse_single(**keywords: Any) -> CorridorCentralEnv:
+def refuse_single(**keywords: Any) -> "CorridorCentralEnv":
     """Say that robots that share a policy come in batches only.
 
     Raises:
@@ -35,7 +34,9 @@ FAMILY = Family(
     "corridor",
     ids={
         "lidarena/CorridorCentral-v0": Registration(
-            "lidarena.envs.corridor:make_single", "lidarena.envs.corridor.central_env:BatchedCorridor", EPISODE_STEPS
+            "lidarena.envs.corridor.central_env:make_single",
+            "lidarena.envs.corridor.central_env:BatchedCorridor",
+            EPISODE_STEPS,
         ),
         SHARED_ID: Registration(
             "lidarena.envs.corridor:refuse_single",
@@ -48,4 +49,13 @@ FAMILY = Family(
     baselines="lidarena.baselines.corridor",
     agent_options=("observation", "action", "neighbours", "lidar.beams", "lidar.max_range", "lidar.field_of_view"),
     keywords_of_0_1="lidarena.envs.corridor.options:modern_keywords",
+)
+
+__getattr__, __dir__ = lazy_names(
+    __name__,
+    {
+        "BatchedCorridor": "lidarena.envs.corridor.central_env",
+        "CorridorCentralEnv": "lidarena.envs.corridor.central_env",
+        "SharedCorridor": "lidarena.envs.corridor.shared_env",
+    },
 )

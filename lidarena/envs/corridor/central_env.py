@@ -9,7 +9,7 @@ from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
 from lidarena.base.keyword_checks import takes_keywords_of
-from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.corridor.drawing import draw_world
 from lidarena.envs.corridor.episodes import CorridorEpisodes
@@ -202,3 +202,6 @@ class BatchedCorridor(BatchedWorlds):
         """Make the worlds; raises like ``CorridorCentralEnv``."""
         worlds = whole_number_of_worlds(num_envs)
         super().__init__(CentralEpisodes(worlds, CorridorOptions.checked(keywords)), autoreset_mode)
+
+
+make_single = entry_point(CorridorCentralEnv)

@@ -5,7 +5,7 @@ from typing import Any, Unpack
 from gymnasium.error import ResetNeeded
 
 from lidarena.base.keyword_checks import takes_keywords_of
-from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.exploration.episodes import ExplorationEpisodes
 from lidarena.envs.exploration.options import ExplorationKeywords, ExplorationOptions
@@ -203,3 +203,6 @@ class BatchedExploration(BatchedWorlds):
         """Make the worlds; raises like ``ExplorationEnv``."""
         worlds = whole_number_of_worlds(num_envs)
         super().__init__(ExplorationEpisodes(worlds, ExplorationOptions.checked(keywords)), autoreset_mode)
+
+
+make_single = entry_point(ExplorationEnv)

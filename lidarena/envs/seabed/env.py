@@ -3,7 +3,7 @@
 from typing import Any, ClassVar, Unpack
 
 from lidarena.base.keyword_checks import takes_keywords_of
-from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.seabed.episodes import SeabedEpisodes
 from lidarena.envs.seabed.options import SeabedKeywords, SeabedOptions
@@ -135,3 +135,6 @@ class BatchedSeabed(BatchedWorlds):
         """Make the worlds; raises like ``SeabedEnv``."""
         worlds = whole_number_of_worlds(num_envs)
         super().__init__(SeabedEpisodes(worlds, SeabedOptions.checked(keywords)), autoreset_mode)
+
+
+make_single = entry_point(SeabedEnv)

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.keyword_checks import takes_keywords_of
-from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.workshop.episodes import WorkshopEpisodes
 from lidarena.envs.workshop.options import WorkshopKeywords, WorkshopOptions
@@ -183,3 +183,6 @@ class BatchedWorkshop(BatchedWorlds):
     def action_masks(self) -> NDArray[np.bool_]:
         """What is allowed in every world (num_envs, n + 1)."""
         return np.asarray(self.episodes.action_masks())
+
+
+make_single = entry_point(WorkshopEnv)

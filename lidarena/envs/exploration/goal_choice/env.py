@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.keyword_checks import takes_keywords_of
-from lidarena.envs.base_env import SingleWorld
+from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.exploration.goal_choice.episodes import GoalChoiceEpisodes
 from lidarena.envs.exploration.goal_choice.options import GoalChoiceKeywords, GoalChoiceOptions
@@ -129,3 +129,6 @@ class BatchedGoalChoice(BatchedWorlds):
     def action_masks(self) -> NDArray[np.bool_]:
         """Which candidates are there in every world (num_envs, candidates)."""
         return np.asarray(self.episodes.action_masks())
+
+
+make_choice = entry_point(GoalChoiceEnv)
