@@ -160,17 +160,17 @@ def _render(
     height, width = image.shape
     place, axes = view.place, view.axes
     sand_lod, fine_lod = np.float32(math.log2(sand.texel)), np.float32(math.log2(fine.texel))
-    scale = _ENTRIES / _FARTHEST
+    scale, pixel = _ENTRIES / _FARTHEST, 1.0 / view.focal
     ground, _, _, _ = surface(grid, place[0], place[1])
     line_depth = place[2] - ground
     for row in range(height):
-        y = (row - view.center_y) / view.focal
+        y = (row - view.center_y) * pixel
+        line_x, line_y = axes[0, 1] * y + axes[0, 2], axes[1, 1] * y + axes[1, 2]
+        line_z = axes[2, 1] * y + axes[2, 2]
         depth, growth = line_depth, 0.0
         for column in range(width):
-            before, x = depth, (column - view.center_x) / view.focal
-            dx = axes[0, 0] * x + axes[0, 1] * y + axes[0, 2]
-            dy = axes[1, 0] * x + axes[1, 1] * y + axes[1, 2]
-            dz = axes[2, 0] * x + axes[2, 1] * y + axes[2, 2]
+            before, x = depth, (column - view.center_x) * pixel
+            dx, dy, dz = axes[0, 0] * x + line_x, axes[1, 0] * x + line_y, axes[2, 0] * x + line_z
             shade, gap, depth = 1.0, 1.0, depth + growth
             for _ in range(_STILL):
                 level, slope_x, slope_y, shade = surface(grid, place[0] + depth * dx, place[1] + depth * dy)
