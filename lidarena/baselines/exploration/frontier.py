@@ -21,6 +21,7 @@ _BESIDE = 1.0  # a goal so near that still cannot be driven to is too narrow a p
 _HOLLOW = 1.5  # a frontier whose middle is farther than this from all its cells runs around known ground (m)
 _VIEW = 2.0  # a frontier longer than so many ranges of the lidar is worth no more than one of this length
 _TURNING = 0.8  # metres that a radian of turning is worth where a frontier runs around the robot
+_TRIED = 8  # places of such a frontier that are tried at one planning instant, at most
 _ENCLOSED = 20.0  # so long it waits where frontiers are left, but no way to them: another pose may open one (s)
 _GROWTH = 0.001  # growth of the known map that justifies a second pass
 
@@ -270,12 +271,17 @@ class FrontierPolicy:
         turn = np.abs((turn + math.pi) % (2.0 * math.pi) - math.pi)
         order = np.argsort(away + _TURNING * turn, kind="stable")
         tried: list[Goal] = []
+        left = _TRIED
         for (row, col), place in zip(frontier.cells[order], terrain.around.points(frontier.cells[order]), strict=True):
             if any(is_same((place[0], place[1]), other) for other in tried):
                 continue
             tried.append((place[0], place[1]))
-            x, y = terrain.around.points(np.array([nearest_cell(terrain.reachable, row, col)]))[0]
-            yield float(x), float(y)
+            x, y = terrain.around.points(np.array([nearest_cell(terrain.reachable, row, col)]))[0].tolist()
+            if not self._blacklist.is_given_up((x, y)):
+                yield x, y
+                left -= 1
+            if not left:
+                return
 
     def _runs_around(self, frontier: Frontier, resolution: float) -> bool:
         """Whether a frontier is longer than the lidar sees at once and its middle is far from all of it."""
