@@ -12,6 +12,15 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import kernel, leaf
 from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.lacam_joint import (
+    EXHAUSTED,
+    FOUND,
+    FULL,
+    GOES_ON,
+    JointSearch,
+    has_room,
+    next_joint_move,
+)
 from lidarena.planning.team.lacam_nodes import (
     SMALL_TEAM,
     LacamNodes,
@@ -21,7 +30,7 @@ from lidarena.planning.team.lacam_nodes import (
     find_slot,
     with_more_room,
 )
-from lidarena.planning.team.pibt import TeamStep, hits_decided, next_configuration, random_below, team_step
+from lidarena.planning.team.pibt import TeamStep, next_configuration, random_below, team_step
 from lidarena.planning.team.search_arrays import GraphArrays
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
 from lidarena.planning.team.traffic import Traffic
@@ -30,7 +39,7 @@ _MOST_BYTES = 128 * 2**20
 _FIRST_NODES = 2048
 _RESTARTS = 1000  # one step in so many goes back to the starts once a plan is known
 _SLICE = 40_000  # robots' moves between two looks at the clock
-GOES_ON, FOUND, EXHAUSTED, FULL = 0, 1, 2, 3
+_JOINT_SLICE = 128  # joint moves between two looks; one alone may take a millisecond where hardly any is possible
 
 
 @leaf
@@ -64,37 +73,6 @@ def _constraints_of(
     return depth
 
 
-@leaf
-def _next_joint_move(number: int, nodes: LacamNodes, graph: GraphArrays, step: TeamStep) -> bool:
-    """Decide on the next of all joint moves from a configuration in which nobody is hit; False after the last."""
-    team = nodes.places.shape[1]
-    joint, order = nodes.joint[number], nodes.order[number]
-    step.moves[:] = -1
-    d = 0
-    if joint[0] >= 0:
-        d = team - 1
-        for before in range(d):
-            step.moves[order[before]] = joint[before]
-    while d >= 0:
-        robot = np.int64(order[d])
-        step.moves[robot] = -1
-        move = np.int64(joint[d]) + 1
-        while move < 9:
-            if graph.neighbours[step.here[robot], move] >= 0 and not hits_decided(robot, move, graph, step):
-                break
-            move += 1
-        if move == 9:
-            joint[d] = -1
-            d -= 1
-            continue
-        joint[d], step.moves[robot] = move, move
-        if d == team - 1:
-            return True
-        d += 1
-        joint[d] = -1
-    return False
-
-
 @kernel
 def _search(  # noqa: C901 - the loop of a search
     graph: GraphArrays,
@@ -111,7 +89,7 @@ def _search(  # noqa: C901 - the loop of a search
     for _ in range(iterations):
         if sizes[2] == 0:
             return 2
-        if sizes[0] + 1 >= len(nodes.parent) or sizes[1] + 2 >= len(nodes.edges) or sizes[2] + 2 >= len(nodes.stack):
+        if not has_room(nodes):
             return 3
         here, goal = np.int64(nodes.stack[sizes[2] - 1]), sizes[3]
         if goal >= 0 and nodes.spent[here] + nodes.ahead[here] >= nodes.spent[goal]:
@@ -122,7 +100,7 @@ def _search(  # noqa: C901 - the loop of a search
             step.here[robot] = nodes.places[here, robot]
             step.occupant[step.here[robot]] = robot
         if depth >= 3 and team <= SMALL_TEAM:
-            made = _next_joint_move(here, nodes, graph, step)
+            made = next_joint_move(here, nodes, graph, ahead, step)
             depth = depth if made else -1
         else:
             made = depth >= 0 and next_configuration(nodes.order[here], constraints, depth, graph, ahead, step)
@@ -181,6 +159,7 @@ class Lacam:
         if (starts == traffic.ends[:, 1]).all():
             self._nodes.sizes[3] = 0
         self.steps = 0
+        self._joint: tuple[JointSearch, JointSearch] | None = None
 
     @property
     def found(self) -> bool:
@@ -198,14 +177,40 @@ class Lacam:
             return FOUND
         portion = max(_SLICE // len(self._traffic), 16)
         while budget.take():
-            graph, ahead = self._traffic.graph.arrays, self._traffic.ahead
-            status = _search(graph, ahead, self._nodes, self._step, self._ranks, portion, first)
-            self.steps += portion
+            status = self._search(portion, first, budget)
             if status == FULL and not self._grow():
                 return FULL
             if status in (FOUND, EXHAUSTED):
                 return status
         return GOES_ON
+
+    def _search(self, portion: int, first: bool, budget: Budget) -> int:
+        """A slice of the search: depth first, in small teams whose plan is not among the first slice best first."""
+        graph, ahead = self._traffic.graph.arrays, self._traffic.ahead
+        begun, self.steps = self.steps > 0, self.steps + portion
+        if not begun or self.found or len(self._traffic) > SMALL_TEAM:
+            return _search(graph, ahead, self._nodes, self._step, self._ranks, portion, first)
+        return self._search_both_ways(portion, budget)
+
+    def _search_both_ways(self, portion: int, budget: Budget) -> int:
+        if self._joint is None:
+            graph, ends, most = self._traffic.graph, self._traffic.ends, self._most
+            to_starts = np.stack([graph.ahead(int(start)) for start in ends[:, 0]])
+            forth = JointSearch(graph.arrays, self._traffic.ahead, self._nodes, self._step, self._ranks, most)
+            self._joint = forth, JointSearch.back(graph.arrays, to_starts, ends, self._ranks, most)
+        forth, back = self._joint
+        status = GOES_ON
+        for turn in range(-(-portion // _JOINT_SLICE)):
+            one, other = (back, forth) if turn % 2 == 1 and not back.is_full else (forth, back)
+            status = one.run(other, _JOINT_SLICE)
+            if status == FOUND:
+                forth.join(back, one is forth)
+            if status == FULL and one is back:
+                status = GOES_ON  # the other one has room
+            if status != GOES_ON or budget.spent():
+                break
+        self._nodes = forth.nodes
+        return status
 
     def _grow(self) -> bool:
         """Make room for twice as many configurations or steps; False at the limit of memory."""

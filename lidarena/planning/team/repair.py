@@ -14,7 +14,9 @@ from lidarena.planning.team.traffic import Traffic
 
 _SMALLEST, _LARGEST = 2, 6
 _DELAYED, _LONGEST_DELAY = 0.1, 8  # share of neighbourhoods whose first robot lets others pass before it leaves
-_AT_RANDOM = 0.25  # share of neighbourhoods that are not built around a late robot
+_AT_RANDOM, _AT_RANDOM_IN_CROWDS, _CROWD = 0.25, 0.05, 32
+"""Shares of neighbourhoods that are not built around a late robot, in small teams and in those of more robots than
+``_CROWD``, where robots chosen at random have hardly ever to do with each other."""
 
 
 class Repair:
@@ -55,7 +57,7 @@ class Repair:
         size = min(int(rng.integers(_SMALLEST, _LARGEST + 1)), team)
         late = np.flatnonzero(self._traffic.lengths > self._traffic.alone)
         first = int(late[rng.integers(len(late))])
-        if rng.random() < _AT_RANDOM:
+        if rng.random() < (_AT_RANDOM if team <= _CROWD else _AT_RANDOM_IN_CROWDS):
             others = rng.permutation(team)
         else:
             near = self._blocking_agents(first)
