@@ -10,7 +10,6 @@ from lidarena.baselines.corridor.team_driving import Floats, steer_to
 from lidarena.baselines.registry import register
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.planning.team.floor_grid import FloorGrid
-from lidarena.planning.team.grid_graph import grid_graph_of
 from lidarena.planning.team.lifelong import LifelongTeam
 
 _SPARE = (0.1, 0.05, 0.02, 0.0)
@@ -23,8 +22,8 @@ _THERE = 0.06
 class LifelongFleet:
     """Plans the next step for everybody when everybody has completed the last one.
 
-    Each step is chosen among several futures of some steps, see ``lidarena.planning.team.lifelong``; that nobody begins
-    a step before all others are done makes it safe at any speed. For ``goals="lifelong"``; where goals stay the same,
+    The plan reaches some steps ahead, see ``lidarena.planning.team.lifelong``; that nobody begins a step before all
+    others are done makes it safe at any speed. For ``goals="lifelong"``; where goals stay the same,
     the robots drive to them.
 
     Attributes:
@@ -33,21 +32,22 @@ class LifelongFleet:
         steps: Steps that were planned in this episode.
     """
 
-    def __init__(self, env: Any, *, futures: int = 8, horizon: int = 6) -> None:
+    def __init__(self, env: Any, *, futures: int = 1, horizon: int = 16, repairs: int = 200) -> None:
         """Make it for an environment of the corridor family.
 
         Args:
             env: A ``corridor_v0.parallel_env`` or ``lidarena/CorridorCentral-v0``.
             futures: How many futures are played through for a step.
-            horizon: Steps of each.
+            horizon: Steps that are planned ahead.
+            repairs: Neighbourhoods of robots that are planned anew for a step.
 
         Raises:
             ConfigError: A number is out of range.
         """
-        for name, value in (("futures", futures), ("horizon", horizon)):
-            if not 1 <= value <= 1000:
-                raise ConfigError(f"{name} = {value} is out of range; 1 to 1000 is allowed")
-        self.fleet, self._futures, self._horizon = Fleet(env), futures, horizon
+        for name, value, least in (("futures", futures, 0), ("horizon", horizon, 1), ("repairs", repairs, 0)):
+            if not least <= value <= 1000:
+                raise ConfigError(f"{name} = {value} is out of range; {least} to 1000 is allowed")
+        self.fleet, self._sizes = Fleet(env), (futures, horizon, repairs)
         self.reset()
 
     def reset(self, seed: int | None = None) -> None:
@@ -76,14 +76,15 @@ class LifelongFleet:
 
     def _begin(self, state: FleetState, grid: FloorGrid) -> None:
         """Lay out the graph for discs as large as the robots' places allow."""
-        self._grid, cells = grid, grid.cells(state.poses[:, :2])
+        self._grid = grid
         for spare in _SPARE:
-            graph = grid_graph_of(grid.blocked, 8, grid.in_cells(self.fleet.radius + spare))
+            graph = grid.graph(self.fleet.radius + spare)
+            cells = grid.standing(state.poses[:, :2], graph)
             places = graph.index[cells[:, 0], cells[:, 1]].astype(np.int64)
             gaps = np.hypot(*(cells[:, None] - cells[None]).transpose(2, 0, 1)) + 1e9 * np.eye(len(cells))
             if (places >= 0).all() and gaps.min() >= max(graph.apart, 1.0) - 1e-9:
                 self._graph = graph
-                self._team = LifelongTeam(graph, places, places, self._futures, self._horizon, self._seed)
+                self._team = LifelongTeam(graph, places, places, *self._sizes, self._seed)
                 self._targets: Floats = grid.points(cells)
                 return
         self.finished, self.message = True, "The robots stand too near to walls or each other for any plan."
@@ -92,7 +93,7 @@ class LifelongFleet:
         """Take up new goals and plan a step."""
         team = self._team
         assert team is not None
-        goals = self._grid.cells(state.goals)
+        goals = self._grid.standing(state.goals, self._graph)
         for robot, place in enumerate(self._graph.index[goals[:, 0], goals[:, 1]].tolist()):
             if place >= 0 and place != team.goals[robot]:
                 try:

@@ -1,9 +1,9 @@
-"""Teams that get a new goal whenever they reach one: a rolling horizon of sampled steps (lifelong MAPF).
+"""Teams that get a new goal whenever they reach one: a rolling horizon (lifelong MAPF).
 
-In every time step several futures of a few steps each are played through with priority inheritance (``pibt``), which
-differ in how ties are broken; the first step of the best is taken, then goals that were reached are replaced. Okumura
-et al. (2022) plan one step ahead, Li et al. (2021, "Lifelong multi-agent path finding in large-scale warehouses") a
-window; this is between the two: no step can lead to a conflict, whatever the horizon.
+A plan reaches some steps ahead, as that of Li et al. (2021, "Lifelong multi-agent path finding in large-scale
+warehouses"). In every time step it is prolonged by a step of priority inheritance (``pibt``, Okumura et al. 2022), so
+that there always is one; a few futures that are played through with priority inheritance alone may replace it; and it
+is repaired (``lifelong_window``). Then its first step is taken and goals that were reached are replaced.
 """
 
 from collections.abc import Callable, Sequence
@@ -15,6 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 from lidarena.base.errors import TeamError
 from lidarena.base.jit import kernel
 from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
+from lidarena.planning.team.lifelong_window import adopt_if_cheaper, improve, waiting_team
 from lidarena.planning.team.pibt import TeamStep, next_configuration, team_step
 from lidarena.planning.team.search_arrays import GraphArrays
 
@@ -48,14 +49,13 @@ def _play(
     ahead: NDArray[np.int32],
     step: TeamStep,
     path: NDArray[np.int32],
-) -> int:
-    """Play one future through; path (steps + 1, k) begins with where the robots are. Return the sum of what is left.
+) -> None:
+    """Play one future through; path (steps + 1, k) begins with where the robots are.
 
-    A robot that has reached its goal is worth nothing more, and makes room for everybody else.
+    A robot that has reached its goal makes room for everybody else.
     """
     team = len(order)
     constraints, done, first = np.zeros(team, np.int64), np.zeros(team, np.bool_), order.copy()
-    total = np.int64(0)
     for t in range(steps):
         for robot in range(team):
             step.here[robot] = path[t, robot]
@@ -66,14 +66,12 @@ def _play(
         for robot in range(team):
             path[t + 1, robot] = graph.neighbours[path[t, robot], step.moves[robot]]
             done[robot] = done[robot] or path[t + 1, robot] == step.goals[robot]
-            total += 0 if done[robot] else ahead[robot, path[t + 1, robot]] // 4096
         place = 0
         for late in range(2):  # whoever is done goes last
             for k in range(team):
                 if done[order[k]] == (late == 1):
                     first[place] = order[k]
                     place += 1
-    return int(total)
 
 
 class LifelongTeam:
@@ -84,8 +82,9 @@ class LifelongTeam:
         starts: (k,) places.
         goals: (k,) places.
         futures: How many are played through in a step.
-        horizon: Steps of each.
-        seed: Of the ties.
+        horizon: Steps that are planned ahead.
+        repairs: Neighbourhoods that are planned anew in a step.
+        seed: Of the ties and of the neighbourhoods.
 
     Attributes:
         places: (k,) int32 where the robots are.
@@ -98,15 +97,17 @@ class LifelongTeam:
         graph: GridGraph,
         starts: NDArray[np.int64],
         goals: NDArray[np.int64],
-        futures: int = 8,
-        horizon: int = 6,
+        futures: int = 1,
+        horizon: int = 16,
+        repairs: int = 200,
         seed: int = 0,
     ) -> None:
-        self._graph, self._futures, self._horizon = graph, futures, horizon
+        self._graph, self._futures, self._horizon, self._repairs = graph, futures, horizon, repairs
         self.places, self.goals = starts.astype(np.int32), goals.astype(np.int64)
         self.waited = np.zeros(len(starts), np.int64)
         self._step = team_step(graph.arrays, self.goals, seed)
         self._ahead = np.stack([graph.ahead(int(goal)) for goal in goals])
+        self._plan = waiting_team(self.places, len(graph), horizon)
 
     def set_goal(self, robot: int, goal: int) -> None:
         """Give a robot a new goal.
@@ -124,17 +125,24 @@ class LifelongTeam:
     def advance(self) -> NDArray[np.bool_]:
         """Take a step; return who is at its goal then (k,)."""
         order = np.argsort(-self.waited, kind="stable").astype(np.int16)
-        best, least = self.places, -1
-        path = np.zeros((self._horizon + 1, len(order)), np.int32)
+        graph, plan = self._graph.arrays, self._plan
         for _ in range(self._futures):
-            path[0] = self.places
-            left = _play(order, np.int64(self._horizon), self._graph.arrays, self._ahead, self._step, path)
-            if least < 0 or left < least:
-                best, least = path[1].copy(), left
-        self.places = best
+            future = self._play(order, self.places, self._horizon)
+            adopt_if_cheaper(future, self.goals, graph, self._ahead, plan, False)
+        improve(self._repairs, self.goals, graph, self._ahead, plan, self._step.random)
+        self.places = plan.paths[:, 1].copy()
+        future = np.vstack([plan.paths[:, 1:].T, self._play(order, plan.paths[:, -1], 1)[1:]])
+        adopt_if_cheaper(np.ascontiguousarray(future), self.goals, graph, self._ahead, plan, True)
         reached: NDArray[np.bool_] = self.places == self.goals
         self.waited = np.where(reached, 0, self.waited + 1)
         return reached
+
+    def _play(self, order: NDArray[np.int16], places: NDArray[np.int32], steps: int) -> NDArray[np.int32]:
+        """Some steps (steps + 1, k) of priority inheritance from some places (k,) on."""
+        path = np.zeros((steps + 1, len(order)), np.int32)
+        path[0] = places
+        _play(order, np.int64(steps), self._graph.arrays, self._ahead, self._step, path)
+        return path
 
 
 def plan_lifelong(
@@ -145,8 +153,9 @@ def plan_lifelong(
     *,
     connectivity: int = 4,
     radius: float = 0.0,
-    futures: int = 8,
-    horizon: int = 6,
+    futures: int = 1,
+    horizon: int = 16,
+    repairs: int = 200,
     seed: int = 0,
 ) -> LifelongPlan:
     """Let a team work for a number of steps; a robot that reaches its goal gets the next one.
@@ -158,9 +167,11 @@ def plan_lifelong(
         steps: Time steps.
         connectivity: 4 or 8 neighbours.
         radius: Of every robot, in cells; 0 = points.
-        futures: How many futures are played through in a step; more cost time and may find better ones.
-        horizon: Steps of each future.
-        seed: Of the ties.
+        futures: How many futures are played through in a step, from 0 on.
+        horizon: Steps that are planned ahead.
+        repairs: Neighbourhoods of robots that are planned anew in a step, from 0 on; more cost time and find better
+            plans.
+        seed: Of the ties and of the neighbourhoods.
 
     Raises:
         TeamError: Fewer places than two, a start or goal where no robot can be, or a number out of range.
@@ -168,15 +179,20 @@ def plan_lifelong(
     blocked, first = np.asarray(grid, np.bool_), np.asarray(starts, np.int64)
     if blocked.ndim != 2 or first.ndim != 2 or first.shape[1:] != (2,) or not len(first):
         raise TeamError(f"a grid of shape {blocked.shape} and starts of shape {first.shape} are no team on a grid")
-    for name, value in (("steps", steps), ("futures", futures), ("horizon", horizon)):
-        if not isinstance(value, int | np.integer) or value < 1:
-            raise TeamError(f"{name} = {value!r} is not possible; a whole number from 1 on is needed")
+    for name, value, least in (
+        ("steps", steps, 1),
+        ("futures", futures, 0),
+        ("horizon", horizon, 1),
+        ("repairs", repairs, 0),
+    ):
+        if not isinstance(value, int | np.integer) or value < least:
+            raise TeamError(f"{name} = {value!r} is not possible; a whole number from {least} on is needed")
     graph = grid_graph_of(np.ascontiguousarray(blocked), connectivity, float(radius))
     if len(graph) < 2:
         raise TeamError(f"a grid with room for a robot in {len(graph)} places has no goals to go on to; 2 are needed")
     places = np.array([_place(graph, "start", robot, cell) for robot, cell in enumerate(first)], np.int64)
     goals = [_place(graph, "goal", robot, next_goal(robot, cell)) for robot, cell in enumerate(first)]
-    team = LifelongTeam(graph, places, places, futures, horizon, seed)
+    team = LifelongTeam(graph, places, places, futures, horizon, repairs, seed)
     for robot, goal in enumerate(goals):
         team.set_goal(robot, goal)
     cells, reached = [graph.cells[team.places]], [np.zeros(len(first), np.bool_)]

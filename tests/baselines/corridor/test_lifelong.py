@@ -39,7 +39,7 @@ def test_nobody_begins_a_step_before_all_have_completed_the_last() -> None:
     assert steps >= 5
 
 
-@pytest.mark.parametrize("option", ["futures", "horizon"])
-def test_numbers_out_of_range_are_refused(option: str) -> None:
-    with pytest.raises(ConfigError, match=f"{option} = 0"):
-        LifelongFleet(make(), **{option: 0})
+@pytest.mark.parametrize(("option", "value"), [("futures", -1), ("horizon", 0), ("repairs", 1001)])
+def test_numbers_out_of_range_are_refused(option: str, value: int) -> None:
+    with pytest.raises(ConfigError, match=f"{option} = {value}"):
+        LifelongFleet(make(), **{option: value})
