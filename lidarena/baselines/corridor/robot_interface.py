@@ -12,6 +12,9 @@ from lidarena.envs.corridor.parallel_env import agent_name
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.planning.team.floor_grid import FloorGrid
 
+_COARSE = 0.199
+"""Cells smaller than these are for robots to which those of 0.2 m show no way: clearance counts there [m]."""
+
 
 @dataclass(frozen=True)
 class FleetState:
@@ -91,7 +94,9 @@ class Fleet:
         """Return the map that the infos hold."""
         own: dict[str, Any] = info if self._central else next(iter(info.values()))
         x, y = np.asarray(own["origin"]).tolist()
-        return FloorGrid(np.asarray(own["map"]) > 50, (x, y), float(own["resolution"]))
+        side = float(own["resolution"])
+        clearance = np.asarray(own["clearance"]) if side < _COARSE else None
+        return FloorGrid(np.asarray(own["map"]) > 50, (x, y), side, clearance)
 
     @property
     def drawn(self) -> bool:

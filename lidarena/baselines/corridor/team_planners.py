@@ -113,11 +113,10 @@ class PlannedFleet:
 
     def plan_from(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan from where the robots are."""
-        self.grid = grid
-        starts, goals = grid.cells(state.poses[:, :2]), grid.cells(state.goals)
+        self.grid, graph = grid, grid.graph(self.radius)
+        ends = grid.standing(state.poses[:, :2], graph), grid.standing(state.goals, graph)
         return plan_team(
-            grid.blocked, starts, goals, self.method, 8, grid.in_cells(self.radius), self.time_limit,
-            seed=self.seed, **self.extras(grid),
+            graph, *ends, self.method, time_limit=self.time_limit, seed=self.seed, **self.extras(grid)
         )  # fmt: skip
 
     def extras(self, grid: FloorGrid) -> dict[str, Any]:

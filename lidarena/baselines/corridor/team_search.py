@@ -171,13 +171,14 @@ class SearchingFleet(PlannedFleet):
     def _plan_some(self, state: FleetState, movers: NDArray[np.int64], radius: float) -> TeamPlan | None:
         """A plan of the team in which only ``movers`` move; None if there is none."""
         grid = self.grid
-        cells, goals = grid.cells(state.poses[:, :2]), grid.cells(state.goals)
-        blocked = grid.blocked.copy()
+        taken = np.zeros_like(grid.blocked)
         for robot in set(range(self.fleet.robots)) - set(movers.tolist()):
-            block_disc(blocked, grid, state.poses[robot, :2], self.fleet.radius)
+            block_disc(taken, grid, state.poses[robot, :2], self.fleet.radius)
+        graph = grid.graph(radius, taken)
+        cells, goals = grid.standing(state.poses[:, :2], graph), grid.standing(state.goals, graph)
         try:
             plan = plan_team(
-                blocked, cells[movers], goals[movers], self.method, 8, grid.in_cells(radius), self.time_limit,
+                graph, cells[movers], goals[movers], self.method, time_limit=self.time_limit,
                 seed=self.seed + self.replans + 1, iterations=self.iterations, cell_costs=wall_costs(grid),
             )  # fmt: skip
         except TeamError:  # a start or goal that is taken, or out of reach, by now

@@ -134,8 +134,9 @@ class CorridorCentralEnv(SingleWorld):
     By robot: ``pose`` (robots, 3) as localisation gives it, ``goal`` (robots, 2), ``remaining`` length of the way [m],
     ``success`` (it has arrived), ``finished``, ``collision``, ``path_length`` [m], ``scan`` (robots,
     beams) measured ranges [m]. Of the team: ``time`` [s],
-    ``reward_terms``, ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution`` [m], ``origin`` (2,), the
-    robots' ``radius`` [m]; ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``,
+    ``reward_terms``, ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``clearance`` (rows, columns) from the
+    cells' centres to the nearest wall [m], their ``resolution`` [m], ``origin`` (2,), the robots' ``radius`` [m];
+    ``measures``, how the team has done: share ``arrival``, ``all_arrived``, share ``collided``,
     ``makespan`` and ``mean_time`` [s]. With ``expose_truth=True`` also ``truth``: ``pose`` (robots, 3) and
     ``path_length`` (robots,).
 

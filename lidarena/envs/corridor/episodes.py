@@ -20,6 +20,7 @@ from lidarena.envs.observers import OneByOne, choose_observer
 from lidarena.envs.path_recorder import PathRecorder
 from lidarena.envs.rewards import StepRewards, choose_reward
 from lidarena.envs.window import Window
+from lidarena.planning.team.floor_grid import FloorGrid
 
 _EXTRA = 8
 """Numbers of an observation besides the beams."""
@@ -74,8 +75,11 @@ class CorridorEpisodes:
         """What a world tells that never changes, as read-only arrays over worlds, which every info holds."""
         grid = self.core.places.grid
         cells = np.where(grid.blocked, 100, 0).astype(np.int8)
-        fixed = {
+        exact = FloorGrid.of(self.core.plan, grid.resolution, exact=True).clearance
+        assert exact is not None
+        fixed: dict[str, NDArray[Any]] = {
             "map": np.broadcast_to(cells, (worlds, *cells.shape)),
+            "clearance": np.broadcast_to(exact, (worlds, *cells.shape)),
             "resolution": np.full(worlds, grid.resolution),
             "origin": np.tile(np.array(grid.origin), (worlds, 1)),
             "radius": np.full(worlds, self.options.robot.radius),

@@ -109,8 +109,9 @@ class CorridorEnv(ParallelWorld):
 
     By agent: ``pose`` (3,) as localisation gives it, ``goal`` (2,), ``remaining`` length of its way [m], ``success``
     (it has arrived), ``collision``, ``path_length`` [m], ``time`` [s]; ``reward_progress`` and so on, the terms one by
-    one, which ``info["reward_terms"]`` gathers; ``map`` (rows, columns) int8 with 0 free, 100 occupied, ``resolution``
-    [m], ``origin`` (2,), ``radius`` of the robots [m], ``scan`` (beams,) measured ranges [m].
+    one, which ``info["reward_terms"]`` gathers; ``map`` (rows, columns) int8 with 0 free, 100 occupied,
+    ``clearance`` (rows, columns) from the cells' centres to the nearest wall [m], their ``resolution`` [m],
+    ``origin`` (2,), ``radius`` of the robots [m], ``scan`` (beams,) measured ranges [m].
 
     ## Arguments
 

@@ -10,7 +10,7 @@ from lidarena.base.errors import ConfigError, ScenarioError, TeamError
 from lidarena.base.random_streams import uniform
 from lidarena.envs.corridor.options import CorridorOptions
 from lidarena.planning.team.floor_grid import FloorGrid
-from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph, grid_graph_of
+from lidarena.planning.team.grid_graph import UNREACHABLE, GridGraph
 from lidarena.planning.team.plan import plan_team
 from lidarena.planning.team.well_formed import is_well_formed
 from lidarena.planning.team.widest_way import narrowest_place
@@ -55,13 +55,14 @@ class StartGoalSampler:
         self._options, self._plan = options, plan
         self._fixed = self._given()
         self._candidates = np.empty(0, np.int64)
-        for cell in self._sides():
-            self.grid = FloorGrid.of(plan, cell)
-            try:
-                self._look_at()
-                return
-            except TeamError as error:
-                refusal = error
+        for self._strict in (True, False):
+            for cell in self._sides():
+                self.grid = FloorGrid.of(plan, cell, exact=cell < CELL)
+                try:
+                    self._look_at()
+                    return
+                except TeamError as error:
+                    refusal = error
         raise refusal
 
     def _sides(self) -> list[float]:
@@ -77,7 +78,7 @@ class StartGoalSampler:
             self._check(*self._fixed)
             return
         room = max(LEAST_ROOM, options.robot.radius + 0.05)
-        self._graph = grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(room))
+        self._graph = self.grid.graph(room)
         known = team_places(self._plan.name)
         predefined = self._mode() == "predefined" and known is not None and known.drawn
         self._candidates = self._predefined() if predefined else self._anywhere()
@@ -130,9 +131,8 @@ class StartGoalSampler:
         """Whether a planner finds a plan, where too little room is left for problems that need none to tell."""
         if draw < _QUICK_DRAWS:
             return False
-        cells, radius = self._graph.cells, self._graph.radius
-        ends = cells[starts], cells[goals]
-        return plan_team(self.grid.blocked, *ends, "prioritized_search", 8, radius, math.inf, iterations=_ORDERS).solved
+        ends = self._graph.cells[starts], self._graph.cells[goals]
+        return plan_team(self._graph, *ends, "prioritized_search", time_limit=math.inf, iterations=_ORDERS).solved
 
     def _points(self, places: NDArray[np.int64]) -> NDArray[np.float64]:
         return self.grid.points(self._graph.cells[places])
@@ -260,15 +260,13 @@ class StartGoalSampler:
                     )
 
     def _check_reachable(self, starts: NDArray[np.float64], goals: NDArray[np.float64]) -> None:
-        graph, points = (
-            grid_graph_of(self.grid.blocked, 8, self.grid.in_cells(r)) for r in (self._options.robot.radius, 0.0)
-        )
+        graph, points = (self.grid.graph(radius) for radius in (self._options.robot.radius, 0.0))
         for robot, (start, goal) in enumerate(zip(starts, goals, strict=True)):
-            if _leads(graph, self.grid, start, goal):
+            if _leads(graph, self.grid, start, goal, self._strict):
                 continue
             x, y = goal
             reason = "no free way connects them"
-            if _leads(points, self.grid, start, goal):
+            if _leads(points, self.grid, start, goal, False):
                 reason = f"with a radius of {self._options.robot.radius} m it is wider than every door on the way"
                 narrow = narrowest_place(self._plan, self.grid.resolution, start, goal)
                 if narrow is not None:
@@ -277,9 +275,17 @@ class StartGoalSampler:
             raise TeamError(f"robot {robot} cannot reach its goal ({x:g}, {y:g}) from its start: {reason}")
 
 
-def _leads(graph: GridGraph, grid: FloorGrid, start: NDArray[np.float64], goal: NDArray[np.float64]) -> bool:
-    """Whether a way leads from the place nearest to ``start`` to the one nearest to ``goal``."""
-    here, there = (_nearest(graph, grid, point) for point in (start, goal))
+def _leads(
+    graph: GridGraph, grid: FloorGrid, start: NDArray[np.float64], goal: NDArray[np.float64], strict: bool
+) -> bool:
+    """Whether a way leads from the place nearest to ``start`` to the one nearest to ``goal``.
+
+    ``strict``: only where robots can stand in the very cells that planners take for the two.
+    """
+    if strict:
+        here, there = (graph.place(cell) for cell in grid.standing([start, goal], graph))
+    else:
+        here, there = (_nearest(graph, grid, point) for point in (start, goal))
     return here >= 0 and there >= 0 and bool(graph.ahead(there)[here] < UNREACHABLE)
 
 

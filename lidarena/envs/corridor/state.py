@@ -22,7 +22,6 @@ from lidarena.envs.corridor.options import CorridorOptions
 from lidarena.envs.corridor.starts_and_goals import StartGoalSampler
 from lidarena.envs.worker_threads import on_threads
 from lidarena.planning.grid.grid_search import path_costs
-from lidarena.planning.team.grid_graph import grid_graph_of
 from lidarena.world.lidar import Lidar, Scanner, first_scan
 from lidarena.world.load import load_floorplan
 from lidarena.world.team_physics import TeamPhysics
@@ -78,7 +77,7 @@ class CorridorCore:
         beyond = coarse.clearance.astype(np.float64) - self.robot.radius
         cost = 1.0 + _WALL_COST * np.clip(1.0 - beyond / _COMFORT, 0.0, 1.0)
         self._costs = np.where(grid.blocked | (beyond < _WALL_GAP), np.inf, cost)
-        fitting = grid_graph_of(grid.blocked, 8, grid.in_cells(self.robot.radius)).index >= 0
+        fitting = grid.graph(self.robot.radius).index >= 0
         self._tight_costs = np.where(fitting | np.isfinite(self._costs), cost, np.inf)
         self._known: OrderedDict[tuple[int, int, bool], NDArray[np.float32]] = OrderedDict()
 

@@ -96,6 +96,7 @@ class GridGraph:
         blocked: (rows, cols) bool.
         connectivity: 4 or 8 neighbours.
         radius: Of every robot [cells].
+        walls: Least distance from blocked cells [cells]; None = the radius.
 
     Attributes:
         cells: (n, 2) [row, column] of the places.
@@ -109,9 +110,11 @@ class GridGraph:
         apart: Least distance of two robots [cells].
     """
 
-    def __init__(self, blocked: NDArray[np.bool_], connectivity: int, radius: float) -> None:
-        self.connectivity, self.radius, self.apart = connectivity, radius, 2.0 * radius
-        standing = ~_near_blocked(blocked, radius)
+    def __init__(
+        self, blocked: NDArray[np.bool_], connectivity: int, radius: float, walls: float | None = None
+    ) -> None:
+        self.blocked, self.connectivity, self.radius, self.apart = blocked, connectivity, radius, 2.0 * radius
+        standing = ~near_blocked(blocked, radius if walls is None else walls)
         self.cells = np.argwhere(standing)
         self.index: NDArray[np.int32] = np.full(blocked.shape, -1, np.int32)
         self.index[standing] = np.arange(len(self.cells), dtype=np.int32)
@@ -168,20 +171,22 @@ class GridGraph:
         return costs
 
 
-def grid_graph_of(blocked: NDArray[np.bool_], connectivity: int, radius: float) -> GridGraph:
-    """The graph of a grid, kept for the next call with an equal grid."""
-    return _cached(np.packbits(blocked).tobytes(), blocked.shape, connectivity, radius)
+def grid_graph_of(
+    blocked: NDArray[np.bool_], connectivity: int, radius: float, walls: float | None = None
+) -> GridGraph:
+    """The graph of a grid, kept for the next call with an equal grid; arguments as ``GridGraph``'s."""
+    return _cached(np.packbits(blocked).tobytes(), blocked.shape, connectivity, radius, walls)
 
 
 @lru_cache(maxsize=16)
-def _cached(bits: bytes, shape: tuple[int, int], connectivity: int, radius: float) -> GridGraph:
+def _cached(bits: bytes, shape: tuple[int, int], connectivity: int, radius: float, walls: float | None) -> GridGraph:
     count = shape[0] * shape[1]
     blocked = np.unpackbits(np.frombuffer(bits, np.uint8), count=count).reshape(shape).astype(np.bool_)
-    return GridGraph(blocked, connectivity, radius)
+    return GridGraph(blocked, connectivity, radius, walls)
 
 
-def _near_blocked(blocked: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:
-    """Cells whose centre is nearer than ``radius`` to a blocked cell (a unit square) or to the grid's border."""
+def near_blocked(blocked: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:
+    """Cells (rows, cols) whose centre is nearer than ``radius`` to a blocked one (a unit square) or the border."""
     reach = math.ceil(radius + 0.5)
     padded = np.pad(blocked, reach, constant_values=True)
     near = blocked.copy()

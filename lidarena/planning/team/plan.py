@@ -33,7 +33,7 @@ MAX_CELL_COST = 64.0
 
 
 def plan_team(
-    grid: ArrayLike,
+    grid: ArrayLike | GridGraph,
     starts: ArrayLike,
     goals: ArrayLike,
     method: Method = "prioritized_search",
@@ -54,7 +54,7 @@ def plan_team(
     or meet; one at its goal stays there and blocks.
 
     Args:
-        grid: (rows, cols) bool, True = blocked.
+        grid: (rows, cols) bool, True = blocked; or the graph of a grid, which has a radius and neighbours of its own.
         starts: (k, 2) int [row, column].
         goals: (k, 2) int [row, column].
         method: See ``Method``.
@@ -79,11 +79,11 @@ def plan_team(
     if math.isfinite(time_limit):
         _load_kernels(method)
     budget = Budget(time_limit, iterations)
-    blocked = _checked_grid(grid)
+    blocked = grid.blocked if isinstance(grid, GridGraph) else _checked_grid(grid)
     first, final = _checked_cells(starts, goals, blocked)
     if method == "joint_astar" and len(first) != 2:
         raise TeamError(f"method 'joint_astar' plans 2 robots, not {len(first)}; 'cbs' certifies the optimum of more")
-    graph = grid_graph_of(blocked, connectivity, float(radius))
+    graph = grid if isinstance(grid, GridGraph) else grid_graph_of(blocked, connectivity, float(radius))
     ends = np.stack([_places(graph, first, "start"), _places(graph, final, "goal")], axis=1)
     surcharge = _surcharge(graph, cell_costs, method)
     deviation_costs = _deviation(deviation, method)

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from lidarena.base.errors import TeamError
+from lidarena.base.errors import MapError, TeamError
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.world.floorplan import Floorplan
 
@@ -41,3 +41,33 @@ def test_bad_input_is_refused():
         FloorGrid.of(ROOM, 0.0)
     with pytest.raises(TeamError, match=r"point \(40, 1\)"):
         FloorGrid.of(ROOM).cells([(40.0, 1.0)])
+    hall = Floorplan.from_shapes("hall", (0.0, 0.0, 300.0, 300.0), [(0.0, 0.0, 300.0, 0.0)], thickness=0.2)
+    with pytest.raises(MapError, match=r"'hall' has 15000 x 15000 cells.* so they must be larger ones"):
+        FloorGrid.of(hall, 0.02)
+
+
+def test_by_clearance_robots_stand_wherever_they_fit():
+    grid = FloorGrid.of(ROOM, 0.1, exact=True)
+    for radius in (0.05, 0.2, 0.33):
+        graph = grid.graph(radius)
+        points = grid.points(np.argwhere(graph.index >= 0))
+        assert ROOM.clearance(points).min() >= radius - 1e-3
+        inside = grid.points(np.argwhere(np.ones(grid.blocked.shape, bool)))
+        low, high = np.array(ROOM.bounds[:2]), np.array(ROOM.bounds[2:])
+        inside = inside[((inside > low) & (inside < high)).all(axis=1)]
+        fitting = ROOM.clearance(inside) >= radius + 1e-3
+        assert fitting.sum() <= len(points)
+        assert graph.index[tuple(grid.cells(inside[fitting]).T)].min() >= 0
+
+
+def test_taken_cells_are_kept_clear_of_and_points_beside_walls_get_the_nearest_cell():
+    grid = FloorGrid.of(ROOM, 0.1, exact=True)
+    taken = np.zeros(grid.blocked.shape, bool)
+    taken[tuple(grid.cells([(1.05, 1.05)])[0])] = True
+    graph = grid.graph(0.2, taken)
+    away = np.hypot(*(grid.points(graph.cells) - (1.05, 1.05)).T)
+    assert away.min() >= 0.2 and len(graph) < len(grid.graph(0.2))
+    beside = np.array([(0.36, 0.75)])  # 0.16 m from the wall
+    cell = grid.standing(beside, graph)
+    assert graph.place(cell[0]) >= 0 and np.hypot(*(grid.points(cell) - beside).T) < 0.15
+    assert np.array_equal(FloorGrid.of(ROOM, 0.1).standing(beside, graph), grid.cells(beside))

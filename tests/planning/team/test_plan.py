@@ -185,6 +185,7 @@ DOOR[3, 4] = False
         (OPEN, [(0, 0)], [(1, 1)], {"connectivity": 6}, "4 or 8"),
         (OPEN, [(0, 0)], [(1, 1)], {"radius": math.nan}, "radius of nan"),
         (OPEN, [(0, 0)], [(1, 1)], {"time_limit": 0.0}, "positive"),
+        (OPEN, [(0, 0)], [(1, 1)], {"time_limit": math.nan}, "time limit of nan"),
         (OPEN, [(0, 0)], [(1, 1)], {"time_limit": None}, "time limit of None"),
         (OPEN, [(0, 0)], [(1, 1)], {"radius": "1"}, "radius of '1'"),
         (OPEN, [(0, 0)], [(1, 1)], {"connectivity": np.array([4, 8])}, "4 or 8"),
