@@ -24,7 +24,7 @@ compare: $(INSTALLED)
 	$(BIN)/python evaluate.py --config configs/compare/quick.yaml
 
 test: $(INSTALLED)
-	$(BIN)/python -m pytest -n $(TEST_PROCESSES) --dist loadfile --no-loadscope-reorder --hypothesis-profile=ci
+	$(BIN)/python -m pytest -n $(TEST_PROCESSES) --dist loadfile --hypothesis-profile=ci
 
 lint: $(INSTALLED)
 	$(BIN)/ruff check .
