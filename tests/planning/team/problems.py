@@ -140,3 +140,21 @@ def taken_moves(reserved: Reservations, times: int) -> np.ndarray:
     shifts = 4 * np.arange(9)
     counts = reserved.counts[reserved.rows].reshape(len(reserved.rows), -1)[:, :times]
     return (counts[:, :, None] >> shifts & 15) > 0
+
+
+def crowded(seed: int, side: int, places: int, robots: int) -> Problem:
+    """A dense problem that ``plan_team`` accepts: 2 or more robots on 3 or more cells, up to these numbers."""
+    rng = np.random.default_rng(seed)
+    while True:
+        grid = np.ones((rng.integers(2, side + 1), rng.integers(2, side + 1)), bool)
+        grid.flat[rng.permutation(grid.size)[: rng.integers(3, places + 1)]] = False
+        cells, count = np.argwhere(~grid), int(rng.integers(2, robots + 1))
+        if len(cells) < count:
+            continue
+        ends = [cells[rng.permutation(len(cells))[:count]] for _ in range(2)]
+        problem = Problem(grid, ends[0], ends[1], int(rng.choice([4, 8])), float(rng.choice([0.0, 0.0, 0.5])))
+        try:
+            plan(problem, "independent_astar")
+        except TeamError:
+            continue
+        return problem

@@ -4,11 +4,10 @@ from functools import lru_cache
 import numpy as np
 import pytest
 
-from lidarena.base.errors import TeamError
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.lacam import EXHAUSTED, FOUND, GOES_ON, Lacam
 from lidarena.world.grid_mazes import draw_grid_maze
-from tests.planning.team.problems import MOVES, Problem, faults, meet, plan, traffic_of
+from tests.planning.team.problems import MOVES, Problem, crowded, faults, meet, plan, traffic_of
 
 INFINITE = float("inf")
 NARROW = "@@@@@@@ @{}@ @@@.@@@ @@@@@@@"
@@ -51,20 +50,7 @@ def is_solvable(problem: Problem) -> bool:  # noqa: C901 - all of it in one plac
 
 def tiny(seed: int) -> Problem:
     """A dense problem that ``plan_team`` accepts: 2 to 4 robots on 3 to 7 cells."""
-    rng = np.random.default_rng(seed)
-    while True:
-        grid = np.ones((rng.integers(2, 5), rng.integers(2, 5)), bool)
-        grid.flat[rng.permutation(grid.size)[: rng.integers(3, 8)]] = False
-        cells, robots = np.argwhere(~grid), int(rng.integers(2, 5))
-        if len(cells) < robots:
-            continue
-        ends = [cells[rng.permutation(len(cells))[:robots]] for _ in range(2)]
-        problem = Problem(grid, ends[0], ends[1], int(rng.choice([4, 8])), float(rng.choice([0.0, 0.0, 0.5])))
-        try:
-            plan(problem, "independent_astar")
-        except TeamError:
-            continue
-        return problem
+    return crowded(seed, side=4, places=7, robots=4)
 
 
 @pytest.mark.parametrize("method", ["lacam", "prioritized_search"])

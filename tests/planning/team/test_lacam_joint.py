@@ -4,11 +4,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lidarena.base.errors import TeamError
 from lidarena.planning.team.lacam_joint import next_joint_move, open_nodes
 from lidarena.planning.team.lacam_nodes import add_node, empty_nodes, find_slot
 from lidarena.planning.team.pibt import team_step
-from tests.planning.team.problems import Problem, faults, meet, plan, traffic_of
+from tests.planning.team.problems import Problem, crowded, faults, meet, plan, traffic_of
 from tests.planning.team.test_lacam import is_solvable, tiny
 
 INFINITE = float("inf")
@@ -16,20 +15,7 @@ INFINITE = float("inf")
 
 def crowd(seed: int) -> Problem:
     """2 to 9 robots on up to 16 cells."""
-    rng = np.random.default_rng(seed)
-    while True:
-        grid = np.ones((rng.integers(2, 6), rng.integers(2, 6)), bool)
-        grid.flat[rng.permutation(grid.size)[: rng.integers(3, 17)]] = False
-        cells, robots = np.argwhere(~grid), int(rng.integers(2, 10))
-        if len(cells) < robots:
-            continue
-        ends = [cells[rng.permutation(len(cells))[:robots]] for _ in range(2)]
-        problem = Problem(grid, ends[0], ends[1], int(rng.choice([4, 8])), float(rng.choice([0.0, 0.0, 0.5])))
-        try:
-            plan(problem, "independent_astar")
-        except TeamError:
-            continue
-        return problem
+    return crowded(seed, side=5, places=16, robots=9)
 
 
 @pytest.mark.parametrize("seed", range(12))
