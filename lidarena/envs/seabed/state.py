@@ -33,6 +33,8 @@ class Vehicle:
         cost: Of all computing so far [s].
         skip: Frames of the last step that was tried.
         refused: Whether the last step was refused.
+        refused_from: Steps from this frame must be shorter than so many frames, since those were refused: without and
+            with six clouds (2,) [frames].
         speed: Of the vehicle, as computed [m/s].
         drift: By how much the error has moved in the last step [m].
         spent: What the last step has cost [s].
@@ -59,6 +61,7 @@ class Vehicle:
         self.odometry = StereoOdometry(self.camera, self.options.odometry, self.stream)
         self.frame, self.cost, self.skip, self.refused = 0, 0.0, 0, False
         self.drift = self.spent = 0.0
+        self.refused_from = np.full(2, np.inf)
         self.speed = self.kind.speed
         self._seen: set[int] = set()
         self.path_lengths = np.zeros(2)
@@ -90,7 +93,7 @@ class Vehicle:
             self.drift = self.spent = 0.0
             return
         before, cost, self.odometry.effort = self._error(), self.cost, Effort()
-        target = min(self.frame + skip, self.last_frame)
+        target = min(self.frame + self._shortened(skip, mode), self.last_frame)
         middle = self.frame + (target - self.frame) // 2
         arrived, to_middle = target, False
         if mode == MODES[0] or middle in (self.frame, target):
@@ -111,7 +114,20 @@ class Vehicle:
         self.skip, self.refused = target - self.frame, not fine
         if fine:
             self._arrive(arrived)
+        self._limit(fine, mode)
         self.drift, self.spent = float(np.linalg.norm(self._error() - before)), self.cost - cost
+
+    def _shortened(self, skip: int, mode: str) -> int:
+        """The skip, or the longest one below what was refused from here: the same pictures would be refused again."""
+        limit = self.refused_from[int(mode != MODES[0])]
+        return skip if skip < limit else max(one for one in self.options.skips if one < limit)
+
+    def _limit(self, fine: bool, mode: str) -> None:
+        """Note what is not to be tried again from here; where even the shortest step was refused, all may be."""
+        if fine or self.skip <= self.options.skips[0]:
+            self.refused_from[:] = np.inf
+        else:
+            self.refused_from[int(mode != MODES[0]) :] = self.skip
 
     def _arrive(self, frame: int) -> None:
         assert self.odometry.last is not None
@@ -190,7 +206,9 @@ class Vehicle:
             "covariance": odometry.covariance.copy(),
             "counts": np.array([self.frame, self.skip, odometry.matches, odometry.refused, odometry.steps]),
             "refused": np.array(self.refused),
-            "numbers": np.array([self.cost, self.speed, self.drift, self.spent, *self.path_lengths]),
+            "numbers": np.array(
+                [self.cost, self.speed, self.drift, self.spent, *self.refused_from, *self.path_lengths]
+            ),
             "motion": self._motion.copy(),
             "seen": seen,
         }
@@ -207,7 +225,7 @@ class Vehicle:
         self.odometry.matches, self.odometry.refused, self.odometry.steps = matches, refused, steps
         self.refused = bool(saved["refused"])
         self.cost, self.speed, self.drift, self.spent = (float(one) for one in saved["numbers"][:4])
-        self.path_lengths = saved["numbers"][4:].copy()
+        self.refused_from, self.path_lengths = saved["numbers"][4:6].copy(), saved["numbers"][6:].copy()
         self._motion[:] = saved["motion"]
         self._seen = set(np.flatnonzero(saved["seen"]).tolist())
         self.positions, self.frames = [self._positions()], [self.frame]

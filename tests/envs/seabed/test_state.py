@@ -52,3 +52,24 @@ def test_a_frame_is_paid_for_once() -> None:
     first = vehicle.spent
     vehicle.step(20, "six_clouds")
     assert vehicle.spent > 2.0 * first and vehicle.cost > first
+
+
+def test_what_was_refused_is_not_tried_again_from_there() -> None:
+    vehicle = Vehicle(SeabedOptions.checked(SHORT | {"least_matches": 5000}))
+    vehicle.begin(np.random.default_rng(0), None)
+    tried = []
+    plain, six = "plain", "six_clouds"
+    for skip, mode in ((40, six), (40, plain), (40, plain), (10, six), (20, plain), (40, plain), (40, plain)):
+        vehicle.step(skip, mode)
+        tried.append(vehicle.skip)
+    assert vehicle.refused and vehicle.frame == 0
+    assert tried == [40, 40, 20, 10, 10, 5, 40]  # where even the shortest is refused, all may be tried
+
+
+def test_a_limit_ends_with_a_fine_step_and_comes_along_in_the_arrays() -> None:
+    vehicle, other = begun(), begun()
+    vehicle.refused_from[:] = 20.0, 10.0
+    other.load_arrays(vehicle.arrays())
+    for one in (vehicle, other):
+        one.step(20, "plain")
+        assert one.frame == one.skip == 10 and np.isinf(one.refused_from).all()
