@@ -36,7 +36,7 @@ def main() -> None:
     """Measure and print."""
     cv2.setNumThreads(1)
     options = SeabedOptions.checked({"duration": 10.0})
-    scene, camera = make_scene(options.kind, 0), options.camera
+    scene, camera = make_scene(options.kinds[0], 0), options.camera
     store = FrameStore(camera, options.water, FeatureOptions())
     spent, _ = seconds(lambda: store.images(scene, 0))
     print(f"rendering, 600 x 400: {1e3 * spent:.1f} ms a pair, {1 / spent:.0f} pairs a second")

@@ -40,12 +40,13 @@ class SeabedEnv(SingleWorld):
 
     | Term | Value | `default` |
     |------|-------|------|
-    | drift | minus how far the error of the position has moved [cm] | 1 |
+    | drift | minus the square of how far the error of the position has moved [cm²] | 2 |
     | compute | minus what the step has cost [0.1 s] | 1 |
     | refused | -1 where the step is refused | 0.05 |
     | progress | share of the flight that was covered | 0 |
 
-    What computing costs is counted, not timed, so that an episode is the same every time.
+    Errors of steps are independent, so that their squares add up to that of the end. What computing costs is counted,
+    not timed, so that an episode is the same every time.
 
     ## Starting state
 
@@ -71,7 +72,7 @@ class SeabedEnv(SingleWorld):
 
     | Name | Type | Default | Meaning |
     |------|------|---------|---------|
-    | `scene` | str | `"scene1"` | or `"scene2"` |
+    | `scene` | str | `"scene1"` | or `"scene2"`; `"both"`: drawn for every episode |
     | `duration` | float or None | `None` | of the flight [s]; None: the scene's |
     | `speed` | float or None | `None` | [m/s]; None: the scene's |
     | `clearance` | two floats or None | `None` | least and greatest distance to the ground [m]; None: the scene's |

@@ -20,6 +20,8 @@ from lidarena.vision.water import Water
 
 OBSERVATIONS = ("navigation",)
 RESOLUTIONS = {"600x400": (600, 400), "800x600": (800, 600)}
+BOTH = "both"
+"""Instead of a scene: drawn for every episode."""
 SKIPS = (1, 2, 3, 4, 6, 8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96)
 """Frames from one computed position to the next."""
 MODES = ("plain", "six_clouds", "six_clouds_to_middle")
@@ -28,7 +30,7 @@ VIEW, BASELINE = math.radians(60.0), 0.4
 """The camera's angle of view, which Bobkov et al. do not print, and its baseline [m], which they do."""
 _LIMITS = Limits(
     choices={
-        "scene": tuple(SCENES),
+        "scene": (*SCENES, BOTH),
         "pick": ("random", "by_seed"),
         "resolution": tuple(RESOLUTIONS),
         "features": KINDS,
@@ -76,7 +78,8 @@ class SeabedOptions:
     """Keywords of ``lidarena/Seabed-v0``.
 
     Attributes:
-        scene: ``"scene1"`` (3.5 to 7 m above the ground, 180 s) or ``"scene2"`` (1 to 10 m, 134 s) of Bobkov et al.
+        scene: ``"scene1"`` (3.5 to 7 m above the ground, 180 s) or ``"scene2"`` (1 to 10 m, 134 s) of Bobkov et al.;
+            ``"both"`` draws one for every episode.
         duration: Of the flight instead of the scene's own [s].
         speed: Instead of the scene's own [m/s].
         clearance: Least and greatest distance to the ground instead of the scene's own [m].
@@ -156,9 +159,12 @@ class SeabedOptions:
             raise ConfigError(f"skips = {self.skips!r} must rise")
 
     @property
-    def kind(self) -> SceneKind:
-        """The scene with what was given instead of its own."""
-        own = SCENES[self.scene]
+    def kinds(self) -> list[SceneKind]:
+        """The scenes that episodes are of, each with what was given instead of its own."""
+        names = list(SCENES) if self.scene == BOTH else [self.scene]
+        return [self._kind(SCENES[name]) for name in names]
+
+    def _kind(self, own: SceneKind) -> SceneKind:
         low, high = own.clearance if self.clearance is None else self.clearance
         return SceneKind((float(low), float(high)), own.longest, self.duration or own.duration, self.speed or own.speed)
 

@@ -8,10 +8,11 @@ from lidarena.envs.rewards import Floats, RewardTerms
 
 REWARDS = RewardTerms(
     ("drift", "compute", "refused", "progress"),
-    {"default": {"drift": 1.0, "compute": 1.0, "refused": 0.05, "progress": 0.0}},
+    {"default": {"drift": 2.0, "compute": 1.0, "refused": 0.05, "progress": 0.0}},
 )
-"""``drift`` is minus how far the estimate's error has moved in the step [cm], ``compute`` minus what the step has cost,
-in units of 0.1 s, ``refused`` -1 where a step was refused, ``progress`` the share of the flight that was covered."""
+"""``drift`` is minus the square of how far the estimate's error has moved in the step [cm²]: errors of steps are
+independent, so their squares add up to that of the end. ``compute`` is minus what the step has cost, in units of 0.1 s,
+``refused`` -1 where a step was refused, ``progress`` the share of the flight that was covered."""
 CENTIMETRES, TENTHS = 100.0, 10.0
 
 
@@ -28,7 +29,7 @@ def weigh_terms(
         progress: (worlds,) share of the flight that was covered.
     """
     values = {
-        "drift": -CENTIMETRES * drift,
+        "drift": -((CENTIMETRES * drift) ** 2),
         "compute": -TENTHS * compute,
         "refused": -refused,
         "progress": progress,

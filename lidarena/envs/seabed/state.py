@@ -27,6 +27,7 @@ class Vehicle:
         options: The checked keywords.
 
     Attributes:
+        kind: Of the scene.
         scene: The ground and the flight.
         odometry: What has been computed.
         frame: Number of the frame at the last computed position.
@@ -43,7 +44,8 @@ class Vehicle:
     """
 
     def __init__(self, options: SeabedOptions) -> None:
-        self.options, self.kind, self.camera = options, options.kind, options.camera
+        self.options, self.kinds, self.camera = options, options.kinds, options.camera
+        self.kind = self.kinds[0]
         self.store = frame_store(self.camera, options.water, options.odometry.features)
         self.number = -1
         self.stream = np.ones(4, np.uint64)
@@ -52,6 +54,8 @@ class Vehicle:
         """Begin a new flight."""
         drawn = _UNSEEN + int(rng.integers(self.options.seabeds))
         self.number = seed if self.options.pick == "by_seed" and seed is not None else drawn
+        if len(self.kinds) > 1:
+            self.kind = self.kinds[int(rng.integers(len(self.kinds)))]
         self.stream[:] = seed_stream(rng)
         self.start()
 
@@ -197,10 +201,11 @@ class Vehicle:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """What later steps depend on, by name."""
-        odometry, seen = self.odometry, np.zeros(self.last_frame + 1, np.bool_)
+        longest = max(kind.duration for kind in self.kinds)
+        odometry, seen = self.odometry, np.zeros(round(longest * RATE) + 1, np.bool_)
         seen[list(self._seen)] = True
         return {
-            "number": np.array(self.number),
+            "number": np.array([self.number, self.kinds.index(self.kind)]),
             "stream": self.stream.copy(),
             "pose": odometry.pose.copy(),
             "covariance": odometry.covariance.copy(),
@@ -215,7 +220,8 @@ class Vehicle:
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from ``arrays``; the picture's track begins anew."""
-        self.number, self.stream[:] = int(saved["number"]), saved["stream"]
+        self.number, self.kind = int(saved["number"][0]), self.kinds[int(saved["number"][1])]
+        self.stream[:] = saved["stream"]
         stream = self.stream.copy()
         self.start()
         self.stream[:] = stream

@@ -63,7 +63,7 @@ def test_the_reward_is_drift_and_compute() -> None:
     env = made(expose_truth=True, reward={"drift": 1.0, "compute": 1.0})
     _, before = env.reset(seed=1)
     _, reward, _, _, info = env.step(np.array([2, 0]))
-    moved = 100 * info["truth"]["error"]  # from none
+    moved = (100 * info["truth"]["error"]) ** 2  # from none
     assert reward == pytest.approx(-moved - 10 * (info["compute"] - before["compute"]))
     assert info["reward_terms"].keys() == {"drift", "compute"}
 

@@ -10,10 +10,18 @@ from lidarena.envs.seabed.options import SeabedOptions
 
 def test_a_scene_may_be_changed() -> None:
     options = SeabedOptions.checked({"scene": "scene2", "clearance": (2, 8), "speed": 1.0, "compass_noise": 0.5})
-    assert options.kind.clearance == (2.0, 8.0) and options.kind.duration == 134.0 and options.kind.speed == 1.0
+    (kind,) = options.kinds
+    assert kind.clearance == (2.0, 8.0) and kind.duration == 134.0 and kind.speed == 1.0
     assert options.odometry.angle_sigma == pytest.approx(0.0087266, rel=1e-4)
     assert SeabedOptions.checked({"resolution": "800x600"}).camera.width == 800
     assert SeabedOptions.checked({"max_episode_steps": None}).max_episode_steps == 5000
+
+
+def test_both_scenes_may_be_flown_over() -> None:
+    kinds = SeabedOptions.checked({"scene": "both", "duration": 4.0}).kinds
+    assert [kind.clearance for kind in kinds] == [(3.5, 7.0), (1.0, 10.0)] and {kind.duration for kind in kinds} == {
+        4.0
+    }
 
 
 @pytest.mark.parametrize(

@@ -73,3 +73,16 @@ def test_a_limit_ends_with_a_fine_step_and_comes_along_in_the_arrays() -> None:
     for one in (vehicle, other):
         one.step(20, "plain")
         assert one.frame == one.skip == 10 and np.isinf(one.refused_from).all()
+
+
+def test_of_both_scenes_one_is_drawn_and_comes_along_in_the_arrays() -> None:
+    options = SeabedOptions.checked(SHORT | {"scene": "both", "duration": None})
+    vehicle, rng, kinds = Vehicle(options), np.random.default_rng(2), set()
+    for _ in range(8):
+        vehicle.begin(rng, None)
+        kinds.add(vehicle.kind)
+    assert kinds == set(options.kinds)
+    other = Vehicle(options)
+    other.begin(np.random.default_rng(5), None)
+    other.load_arrays(vehicle.arrays())
+    assert other.kind == vehicle.kind and other.last_frame == vehicle.last_frame
