@@ -1,6 +1,7 @@
 """Driving along a planned path at constant speed: a step is a chord of the path, or turns aside from what it hits."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -14,6 +15,8 @@ _WINDOW = 3 * _POINTS_A_STEP
 _TURN = math.radians(7.5)
 _TURNS = 24
 """Headings that are tried to either side of the wanted one, ``_TURN`` apart."""
+_AHEAD = math.radians(75.0)
+"""Headings that turn aside by more lead back rather than on."""
 _SPARE = 1e-3
 """Clearance of every step, over its length."""
 NO_WALLS = np.array([-np.inf, -np.inf, np.inf, np.inf])
@@ -135,6 +138,29 @@ class ChordFollower:
             np.zeros(1, np.int64),
         )
         return float(heading)
+
+    def careful_heading(self, place: NDArray[np.float64], choices: Sequence[NDArray[np.float64]]) -> tuple[float, bool]:
+        """Heading of the next step among obstacles that are known only in part.
+
+        Args:
+            place: See :meth:`heading`.
+            choices: Discs (K, 3) as the class takes them, those that would best be kept away from first; further ones
+                count if none of the headings that lead on keeps away from these [m].
+
+        Returns:
+            The heading [rad], and whether it touches none of the last discs.
+        """
+        x, y, blocker = float(place[0]), float(place[1]), np.zeros(1, np.int64)
+        for discs in choices:
+            grown = discs + np.array([0.0, 0.0, _SPARE * self._step])
+            target, heading = aim(self._points, self._next, x, y, self._step, grown, self._walls, blocker)
+            there = x + self._step * math.cos(heading), y + self._step * math.sin(heading)
+            free = segment_is_free(x, y, *there, grown, self._walls, blocker)
+            wanted = math.atan2(self._points[target, 1] - y, self._points[target, 0] - x)
+            if free and abs(math.remainder(heading - wanted, 2.0 * math.pi)) <= _AHEAD:
+                break
+        self._next = int(target)
+        return float(heading), bool(free)
 
     def at_end(self, place: NDArray[np.float64]) -> bool:
         """Whether the robot is within a step of the path's end."""

@@ -58,8 +58,29 @@ def nearest_of_each(info: dict[str, Any], lidar: LidarSpec) -> NDArray[np.float6
     return nearest
 
 
+def hidden_beside(info: dict[str, Any], lidar: LidarSpec) -> NDArray[np.float64]:
+    """How far from each hit (n,) of :func:`hits_of` its obstacle may go on unseen [m].
+
+    Half way to the neighbouring hit, or to the next beam where that sees past the obstacle: its end lies somewhere
+    before it.
+
+    Args:
+        info: See :func:`hits_of`.
+        lidar: See there.
+    """
+    scan = np.asarray(info["scan"], np.float64)
+    hit, hidden = _hit(scan, lidar), np.zeros(len(scan))
+    for side in (-1, 1):
+        beyond = np.roll(scan, side)
+        nearer = np.minimum(scan, beyond)
+        together = np.roll(hit, side) & (np.abs(scan - beyond) <= (_JUMP + 2.0 * lidar.increment) * nearer)
+        apart = np.sqrt((scan - beyond) ** 2 + scan * beyond * lidar.increment**2)
+        hidden = np.maximum(hidden, np.where(together, 0.5 * apart, scan * lidar.increment))
+    return np.asarray(hidden[hit])
+
+
 class SeenObstacles:
-    """Remembers one hit in every cell of a fine lattice.
+    """Remembers one hit in every cell of a fine lattice, the one beside which the least was hidden.
 
     Args:
         cell: Side of a cell [m].
@@ -67,15 +88,23 @@ class SeenObstacles:
 
     def __init__(self, cell: float) -> None:
         self._cell = cell
-        self._points: dict[tuple[int, int], NDArray[np.float64]] = {}
+        self._hits: dict[tuple[int, int], tuple[float, float, float]] = {}
 
-    def add(self, points: NDArray[np.float64]) -> bool:
-        """Remember points (n, 2) [m]; whether one of them was in a new cell."""
-        before = len(self._points)
-        for key, point in zip(np.floor(points / self._cell).astype(int).tolist(), points, strict=True):
-            self._points.setdefault((key[0], key[1]), point)
-        return len(self._points) > before
+    def add(self, points: NDArray[np.float64], hidden: NDArray[np.float64]) -> bool:
+        """Remember hits; whether one of them was in a new cell.
 
-    def points(self) -> NDArray[np.float64]:
-        """All of them (n, 2) [m]."""
-        return np.array(list(self._points.values())).reshape(-1, 2)
+        Args:
+            points: (n, 2) [m].
+            hidden: (n,) how far beside each its obstacle may go on unseen [m].
+        """
+        before = len(self._hits)
+        cells = np.floor(points / self._cell).astype(int).tolist()
+        for (column, row), (x, y), beside in zip(cells, points.tolist(), hidden.tolist(), strict=True):
+            known = self._hits.get((column, row))
+            if known is None or beside < known[2]:
+                self._hits[column, row] = (x, y, beside)
+        return len(self._hits) > before
+
+    def hits(self) -> NDArray[np.float64]:
+        """All of them (n, 3): x, y, and how far beside each its obstacle may go on unseen [m]."""
+        return np.array(list(self._hits.values())).reshape(-1, 3)

@@ -58,10 +58,12 @@ class FieldParameters:
         guard: Turn a step aside that would come nearer to an obstacle than ``h_0``.
         regression: Run the regression search.
         repeat_regression: Repeat it, from both ends, while the path gets shorter.
-        fit_scale: Multiply all lengths by the power of ten that is nearest to the scene's longer side over 100 m.
+        fit_scale: Multiply all lengths by the scene's longer side over 100 m, or by 10 radii of the robot over 1 m if
+            that is less.
         ways: 1 to 3 ways are tried in an attempt, the shortest counts: from the start; from the goal (from its back, a
             trap is none); from the start by the mirror image of the farthest corner, on an obstacle's other side.
-        attempts: Walks, at most; each has half the ``rho_0`` and ``h_0`` of the one before, so that gaps open.
+        attempts: Walks, at most. Of several, ``rho_0`` and ``h_0`` are halved until no further halving opens gaps
+            through which the way is 5% shorter; the next ones have half and twice as much, and so on.
     """
 
     LENGTHS: ClassVar[tuple[str, ...]] = ("rho_0", "d_0", "gamma", "arrival_radius", "rho_1", "h_0")
@@ -111,8 +113,10 @@ class FieldParameters:
 
     def tightened(self, factor: float) -> "FieldParameters":
         """Return the same parameters for gaps narrower by ``factor`` < 1: obstacles and the goal reach less far."""
+        if factor == 1.0:
+            return self
         h_0, gamma = self.h_0 * factor, min(self.gamma, self.h_0 * factor / 2)
-        arrival = max(gamma / 2, min(self.arrival_radius, h_0))
+        arrival = max(gamma / 2, min(self.arrival_radius, h_0, gamma))
         rho_0, d_0 = self.rho_0 * factor, self.d_0 * factor
         return replace(self, rho_0=rho_0, d_0=d_0, h_0=h_0, gamma=gamma, arrival_radius=arrival)
 

@@ -12,6 +12,8 @@ from lidarena.planning.potential_field.field_kernels import Obstacles
 
 _ROOM = 100.0
 """Side of Yang et al.'s room (m)."""
+_RADII = 10.0
+"""The scale is at most so many radii of the robot over 1 m (1/m): 1 in Yang et al.'s room for a robot of 0.1 m."""
 _SHARE = 0.999
 """A start or goal nearer to an obstacle than the wanted clearance keeps this share of the clearance it has."""
 
@@ -25,12 +27,14 @@ class FieldScene:
         walls: (4,) x_min, y_min, x_max, y_max drawn in by the robot's radius (m); ±inf without a room.
         start: (2,) x, y (m).
         goal: (2,) x, y (m).
+        radius: Of the robot, by which discs and walls have grown (m).
     """
 
     discs: NDArray[np.float64]
     walls: NDArray[np.float64]
     start: NDArray[np.float64]
     goal: NDArray[np.float64]
+    radius: float = 0.0
 
     @cached_property
     def goal_gap(self) -> float:
@@ -61,17 +65,27 @@ class FieldScene:
 
     def narrowed(self, obstacles: Obstacles) -> "FieldScene":
         """Return the same scene with the obstacles of :meth:`keeping` in place of its own."""
-        return FieldScene(*obstacles, self.start, self.goal)
+        return FieldScene(*obstacles, self.start, self.goal, self.radius)
 
     @property
     def scale(self) -> float:
-        """The power of ten nearest to the longer side of the room, or else of what there is, over Yang et al.'s."""
+        """What lengths that were printed for Yang et al.'s room of 100 m are multiplied by in this scene.
+
+        The longer side over 100 m of the room, or else of what lies about start and goal, no farther away than they are
+        from each other. No more than 10 radii of the robot over 1 m, so that a small robot in a large hall does not
+        keep away from obstacles as if it were large.
+        """
         low, high = self.walls[:2], self.walls[2:]
-        if not np.isfinite(self.walls).all():
-            points = np.vstack([self.discs[:, :2], self.start, self.goal])
+        if np.isfinite(self.walls).all():
+            low, high = low - self.radius, high + self.radius
+        else:
+            centres, ends = self.discs[:, :2], (self.start, self.goal)
+            away = np.minimum(*(np.hypot(*(centres - end).T) for end in ends))
+            points = np.vstack([centres[away <= math.dist(*ends)], *ends])
             low, high = points.min(axis=0), points.max(axis=0)
         side = float((high - low).max())
-        return 10.0 ** round(math.log10(side / _ROOM)) if side > 0 else 1.0
+        scale = side / _ROOM if side > 0 else 1.0
+        return min(scale, _RADII * self.radius) if self.radius > 0.0 else scale
 
 
 def make_scene(
@@ -99,7 +113,7 @@ def make_scene(
     if not (math.isfinite(radius) and radius >= 0.0):
         raise MapError(f"robot_radius = {robot_radius!r}; a finite number of metres from 0 on is needed")
     discs[:, 2] += radius
-    scene = FieldScene(discs, _walls(bounds, radius), _point("start", start), _point("goal", goal))
+    scene = FieldScene(discs, _walls(bounds, radius), _point("start", start), _point("goal", goal), radius)
     for name, point in (("start", scene.start), ("goal", scene.goal)):
         _refuse_inside(name, point, scene, radius)
     return scene

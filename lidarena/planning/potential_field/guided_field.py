@@ -6,19 +6,22 @@ no step from which it would lose sight of every lookahead point, and goes straig
 since the lookahead point stays in sight on the way to it, the walk arrives.
 """
 
+import itertools
 import math
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.jit import leaf
 from lidarena.planning.potential_field.circle_grid import shortest_grid_path
+from lidarena.planning.potential_field.clearance_order import clearance_shares
 from lidarena.planning.potential_field.disc_clearance import segment_is_free
 from lidarena.planning.potential_field.field_descent import ARRIVED, OUT_OF_STEPS
 from lidarena.planning.potential_field.field_kernels import Field, Obstacles, force_at
-from lidarena.planning.potential_field.field_parameters import field_parameters
-from lidarena.planning.potential_field.field_scene import make_scene
+from lidarena.planning.potential_field.field_parameters import FieldParameters, field_parameters
+from lidarena.planning.potential_field.field_scene import FieldScene, make_scene
+from lidarena.planning.potential_field.gap_graph import GapGraph
 from lidarena.planning.potential_field.potential_field import PathResult
 from lidarena.planning.potential_field.regression_search import path_length, regression_search, shortened
 
@@ -27,8 +30,10 @@ _AHEAD = 8.0
 _TURN = 0.1
 """Most a heading turns in a step (rad)."""
 _WINDOW = 20
-_CLEARANCES = (1.0, 0.5, 0.25, 0.1, 0.02)
-"""The walk keeps the largest of these shares of h_0 with which the A* path has a way."""
+_WEIGHT = 2.0
+"""A* pays so much more for cells without any clearance."""
+_DETOUR = 1.1
+"""A* path that is so much longer than the gaps between obstacles need may be one that its grid or weight led astray."""
 
 
 @leaf
@@ -117,6 +122,53 @@ def _spaced(path: NDArray[np.float64], spacing: float) -> NDArray[np.float64]:
     return np.column_stack([np.interp(wanted, at, path[:, 0]), np.interp(wanted, at, path[:, 1])])
 
 
+class _Route(NamedTuple):
+    """What a walk is led by.
+
+    Attributes:
+        points: (n, 2) corners (m).
+        parameters: With the clearance ``h_0`` that it keeps.
+        kept: Obstacles, grown by that.
+    """
+
+    points: NDArray[np.float64]
+    parameters: FieldParameters
+    kept: Obstacles
+
+
+def _find_route(scene: FieldScene, parameters: FieldParameters) -> tuple[_Route | None, list[float]]:
+    """The route of the first clearance that is no detour, or else the shortest; the clearances without any (m)."""
+    gaps, best, without = GapGraph(scene), None, []
+    shares = clearance_shares(scene, parameters.h_0, parameters.attempts)
+    enough = _DETOUR * gaps.way_length(shares[0] * parameters.h_0)
+    for share in shares:
+        tried = parameters.tightened(share)
+        kept = scene.keeping(tried.h_0)
+        points = shortest_grid_path(scene.narrowed(kept), tried.h_0, _WEIGHT)
+        if not len(points) or path_length(points) > enough:
+            points = _shorter(points, _between(gaps, kept, tried.h_0))
+        if not len(points):
+            without.append(tried.h_0)
+        elif best is None or path_length(points) < path_length(best.points):
+            best = _Route(points, tried, kept)
+            if path_length(points) <= enough:
+                break
+    return best, without
+
+
+def _between(gaps: GapGraph, kept: Obstacles, clearance: float) -> NDArray[np.float64]:
+    """A free way (n, 2) through gaps that may be too fine for A*'s grid; (0, 2) if there is none."""
+    way, blocker = gaps.way(clearance, in_the_middle=True), np.zeros(1, np.int64)
+    if not all(segment_is_free(*a, *b, *kept, blocker) for a, b in itertools.pairwise(way)):
+        return np.empty((0, 2))
+    return shortened(regression_search(way, *kept), *kept) if len(way) else way
+
+
+def _shorter(one: NDArray[np.float64], other: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The shorter of two paths (n, 2), either of which may be missing (0, 2)."""
+    return other if not len(one) or (len(other) and path_length(other) < path_length(one)) else one
+
+
 def plan_guided_path(
     circles: ArrayLike,
     start: ArrayLike,
@@ -140,16 +192,12 @@ def plan_guided_path(
     scene = make_scene(circles, start, goal, robot_radius, bounds)
     parameters = field_parameters("robust", **overrides).fitted(scene.scale, overrides)
     none = np.empty((0, 3))
-    for share in _CLEARANCES:
-        tried = parameters.tightened(share)
-        kept = scene.keeping(tried.h_0)
-        narrowed = scene.narrowed(kept)
-        route = shortest_grid_path(narrowed, tried.h_0, 2.0)
-        if len(route):
-            break
-    else:
-        alone = scene.start[None].copy()
-        return PathResult(False, False, alone, alone.copy(), 0, "A* finds no path on its grid", none, parameters)
+    found, without = _find_route(scene, parameters)
+    if found is None:
+        alone, tried_m = scene.start[None].copy(), ", ".join(f"{clearance:.3g}" for clearance in without)
+        message = f"A* finds no path on its grid with clearances of {tried_m} m beside the robot"
+        return PathResult(False, False, alone, alone.copy(), 0, message, none, parameters)
+    route, tried, kept = found
     route = shortened(regression_search(route, *kept), *kept)
     points = _spaced(route, tried.gamma)
     steps = min(parameters.max_steps, 4 * len(points) + 1000)

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.planning.potential_field import field_kernels
+from lidarena.planning.potential_field.clearance_order import clearance_shares
 from lidarena.planning.potential_field.disc_clearance import segment_is_free
 from lidarena.planning.potential_field.field_descent import ARRIVED, COLLIDED, OUT_OF_FILLS, TRAPPED, walk
 from lidarena.planning.potential_field.field_kernels import NEAREST
@@ -27,8 +28,6 @@ from lidarena.planning.potential_field.regression_search import path_length, reg
 
 __all__ = ["PRESETS", "FieldParameters", "FieldWarning", "PathResult", "PotentialField", "plan_path"]
 
-_HALVING = 0.5
-"""Each further attempt plans for gaps so much narrower."""
 _STRAIGHT = 1.002
 """No other way is tried if a path is longer than the straight line by no more than this."""
 
@@ -86,7 +85,9 @@ class PotentialField:
     ) -> "PotentialField":
         """Return the field in which :func:`plan_path` with the same arguments makes its first step."""
         scene = make_scene(circles, start, goal, robot_radius, bounds)
-        return cls(scene, field_parameters(preset, **overrides).fitted(scene.scale, overrides), np.empty((0, 3)))
+        parameters = field_parameters(preset, **overrides).fitted(scene.scale, overrides)
+        share = clearance_shares(scene, parameters.h_0, parameters.attempts)[0]
+        return cls(scene, parameters.tightened(share), np.empty((0, 3)))
 
     @classmethod
     def after(
@@ -157,16 +158,17 @@ def plan_path(
     parameters = field_parameters(preset, **overrides).fitted(scene.scale, overrides)
     check_gain_ratio(parameters, scene.goal_gap)
     noise = seed_stream(np.random.default_rng(parameters.seed))
-    steps = 0
-    for attempt in range(parameters.attempts):
-        tried = parameters if attempt == 0 else parameters.tightened(_HALVING**attempt)
+    steps, kept = 0, []
+    for share in clearance_shares(scene, parameters.h_0, parameters.attempts):
+        tried = parameters.tightened(share)
         result, taken = _best_way(scene, tried, noise)
         steps += taken
+        kept.append(f"{tried.h_0:.3g}")
         if result.success:
             break
     if not result.success and parameters.attempts > 1:
-        said = f"no path was found in {attempt + 1} attempts with {steps} steps; in the last, {result.message}"
-        return result._replace(message=said)
+        tries = f"in {len(kept)} attempts with {steps} steps and clearances of {', '.join(kept)} m beside the robot"
+        return result._replace(message=f"no path was found {tries}; in the last, {result.message}")
     return result
 
 

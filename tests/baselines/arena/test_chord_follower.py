@@ -76,3 +76,21 @@ def test_only_what_lies_ahead_blocks_the_path() -> None:
     follower.heading(np.zeros(2))
     assert not follower.is_blocked(disc)
     assert follower.is_blocked(np.array([[5.2, 3.0, 0.3]]))
+
+
+def test_the_widest_berth_that_lets_on_is_given() -> None:
+    follower = ChordFollower(np.array([[0.0, 0.0], [9.0, 0.0]]), 1.0, NOTHING)
+    post = np.array([[1.0, 0.6, 0.0]])
+    wide, narrow, none = (post + np.array([0.0, 0.0, radius]) for radius in (0.9, 0.5, 0.1))
+    heading, free = follower.careful_heading(np.zeros(2), [wide, narrow, none])
+    assert free and math.radians(-75) <= heading < math.radians(-10)
+    gate = np.array([[0.8, 0.6, 0.0], [0.8, -0.6, 0.0]])
+    heading, free = follower.careful_heading(np.zeros(2), [gate + np.array([0, 0, 0.9]), gate + np.array([0, 0, 0.5])])
+    assert free and heading == pytest.approx(0.0)
+
+
+def test_a_robot_that_nothing_lets_pass_is_told_so() -> None:
+    ring = np.linspace(0, 2 * np.pi, 40)
+    discs = np.column_stack([0.6 * np.cos(ring), 0.6 * np.sin(ring), np.full(40, 0.2)])
+    follower = ChordFollower(np.array([[0.0, 0.0], [9.0, 0.0]]), 1.0, NOTHING)
+    assert not follower.careful_heading(np.zeros(2), [discs])[1]

@@ -74,18 +74,30 @@ def test_what_a_robot_touches_does_not_grow() -> None:
     assert discs[0, 2] == 3.0
 
 
-@pytest.mark.parametrize(
-    ("side", "scale"), [(100.0, 1.0), (31.7, 1.0), (31.5, 0.1), (10.0, 0.1), (316.0, 1.0), (317.0, 10.0), (0.1, 1e-3)]
-)
-def test_a_room_is_measured_in_powers_of_ten(side: float, scale: float) -> None:
+@pytest.mark.parametrize("side", [100.0, 31.7, 31.5, 10.0, 316.0, 317.0, 0.1])
+def test_a_room_is_measured_by_its_longer_side(side: float) -> None:
     ends = (0.1 * side, 0.1 * side), (0.15 * side, 0.2 * side)
     for bounds in ((0, 0, side, 0.3 * side), (0, 0, 0.3 * side, side)):
-        assert make_scene([], *ends, 0.0, bounds).scale == pytest.approx(scale)
+        for radius in (0.0, 0.02 * side):  # that is what a large robot leaves of the room
+            assert make_scene([], *ends, radius, bounds).scale == pytest.approx(side / 100)
+
+
+def test_a_small_robot_in_a_large_hall_is_measured_itself() -> None:
+    hall = (0, 0, 1000, 1000)
+    scales = [make_scene([], (100, 100), (900, 900), radius, hall).scale for radius in (0.1, 0.5, 1.0, 2.0)]
+    assert scales == pytest.approx([1.0, 5.0, 10.0, 10.0])
+
+
+def test_lengths_have_no_step_where_the_decade_of_the_side_changes() -> None:
+    ends = (10, 10), (300, 300)
+    below, above = (make_scene([], *ends, 0.0, (0, 0, side, side)).scale for side in (316.2, 316.3))
+    assert 1.0 < above / below < 1.001
 
 
 def test_without_a_room_what_there_is_is_measured() -> None:
-    assert make_scene([], (0, 0), (90, 3)).scale == 1.0
-    assert make_scene([(400, 0, 5)], (0, 0), (90, 3)).scale == 10.0
+    assert make_scene([], (0, 0), (90, 3)).scale == pytest.approx(0.9)
+    assert make_scene([(170, 0, 5)], (0, 0), (90, 3)).scale == pytest.approx(1.7)
+    assert make_scene([(400, 0, 5)], (0, 0), (90, 3)).scale == pytest.approx(0.9)  # too far away to matter
     assert make_scene([], (3, 3), (3, 3)).scale == 1.0
 
 

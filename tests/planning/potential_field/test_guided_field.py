@@ -60,9 +60,8 @@ def test_no_path_and_no_steps_are_said():
     angles = np.linspace(0, 2 * np.pi, 60, endpoint=False)
     cage = np.column_stack([50 + 10 * np.cos(angles), 50 + 10 * np.sin(angles), np.full(60, 1.0)])
     result = plan_guided_path(cage, (50, 50), (5, 5), bounds=(0, 0, 100, 100))
-    assert (
-        not result.success and result.message == "A* finds no path on its grid" and result.path.tolist() == [[50, 50]]
-    )
+    said = "A* finds no path on its grid with clearances of 1.5, 0.75, 0.375, 0.188, 0.0938, 0.0469 m beside the robot"
+    assert not result.success and result.message == said and result.path.tolist() == [[50, 50]]
     result = plan_guided_path([], (0, 0), (50, 50), max_steps=10)
     assert not result.success and "within 10 steps (the limit)" in result.message and len(result.path) == 11
 
