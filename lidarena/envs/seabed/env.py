@@ -32,7 +32,8 @@ class SeabedEnv(SingleWorld):
 
     ``Box(0, 10, (13,), float32)``; ``lidarena.envs.seabed.observations.NAMES`` names the numbers: matched features,
     overlap, height, speed, turning, uncertainty of position and heading, the last skip, whether it was refused, what it
-    has cost, what of the flight is left, how many frames an overlap of 75% allows, share of features that matched.
+    has cost, how many frames are left (96 at most), how many frames an overlap of 75% allows, share of features that
+    matched.
 
     ## Rewards
 
@@ -40,7 +41,7 @@ class SeabedEnv(SingleWorld):
 
     | Term | Value | `default` |
     |------|-------|------|
-    | drift | minus the square of how far the error of the position has moved [cm²] | 2 |
+    | drift | minus the square of how far the error of the position has moved [cm²] | 4 |
     | compute | minus what the step has cost [0.1 s] | 1 |
     | refused | -1 where the step is refused | 0.05 |
     | progress | share of the flight that was covered | 0 |

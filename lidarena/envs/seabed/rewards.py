@@ -8,7 +8,7 @@ from lidarena.envs.rewards import Floats, RewardTerms
 
 REWARDS = RewardTerms(
     ("drift", "compute", "refused", "progress"),
-    {"default": {"drift": 2.0, "compute": 1.0, "refused": 0.05, "progress": 0.0}},
+    {"default": {"drift": 4.0, "compute": 1.0, "refused": 0.05, "progress": 0.0}},
 )
 """``drift`` is minus the square of how far the estimate's error has moved in the step [cm²]: errors of steps are
 independent, so their squares add up to that of the end. ``compute`` is minus what the step has cost, in units of 0.1 s,

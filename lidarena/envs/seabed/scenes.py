@@ -22,8 +22,8 @@ RATE = 25.0
 """Frames a second (Bobkov et al.)."""
 _KEPT = 1600
 """Frames whose features are kept, half a megabyte each at 600 × 400 pixels."""
-_AT_HAND = 10
-"""Scenes that are kept."""
+_AT_HAND = 20
+"""Scenes that are kept, 16 MB each."""
 
 
 @dataclass(frozen=True)

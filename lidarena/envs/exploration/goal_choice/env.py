@@ -40,7 +40,7 @@ class GoalChoiceEnv(SingleWorld):
 
     | Term | Value | `preference` |
     |------|-------|------|
-    | explored | gain in completeness | 5 |
+    | explored | gain in completeness | 1 |
     | path | minus the path driven, over that which is usual in a floor plan of this size | 1 |
     | time | minus 0.03 m for every second, over the same | 1 |
     | uncertainty | minus (0.05 + 2.5 preference) times the gain in completeness times ln(D / 1e-4) | 1 |
@@ -75,7 +75,7 @@ class GoalChoiceEnv(SingleWorld):
     | `preference` | float or str | `"random"` | how much certainty is worth, 0 to 1; or drawn for every episode |
     | `candidates` | int | `24` | most candidates that are told of |
     | `places` | int | `6` | known places among them, at most |
-    | `least_frontier` | float | `0.2` | smallest frontier that is a candidate [m] |
+    | `least_frontier` | float | `0.4` | smallest frontier that is a candidate [m] |
     | `choice_period` | float | `2.0` | a choice may be changed so often [s] |
     | `time_limit` | float or None | `2000.0` | truncates [s] |
     | `reward` | str, dict or function | `"preference"` | see above |

@@ -48,7 +48,7 @@ class GoalChoiceOptions:
     preference: float | str = "random"
     candidates: int = 24
     places: int = 6
-    least_frontier: float = 0.2
+    least_frontier: float = 0.4
     choice_period: float = 2.0
     time_limit: float | None = 2000.0
     reward: RewardSpec = "preference"
