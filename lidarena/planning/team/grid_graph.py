@@ -1,7 +1,9 @@
 """Where a robot of a given radius can stand and go on a grid, and how far it is from everywhere to a goal."""
 
 import math
-from functools import lru_cache
+import threading
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,7 +20,9 @@ straight move, so that paths run straight."""
 
 UNREACHABLE = np.int64(2**30)
 _CACHED_BYTES = 24 * 2**20  # of distances kept, per graph
-_KEPT_TABLES = 2
+_KEPT_TABLES, _KEPT_TABLE_BYTES = 2, 32 * 2**20
+KEPT_GRAPHS, KEPT_BYTES = 16, 64 * 2**20
+"""How many graphs are kept for the next call with an equal grid, and how large they may be with what they keep."""
 
 
 @kernel
@@ -44,9 +48,15 @@ def _neighbours(index: NDArray[np.int32], moves: NDArray[np.int64], connectivity
 
 @leaf
 def _flood_steps(
-    neighbours: NDArray[np.int32], goal: int, ahead: NDArray[np.int32], queue: NDArray[np.int32], step: int
+    neighbours: NDArray[np.int32],
+    connectivity: int,
+    goal: int,
+    ahead: NDArray[np.int32],
+    queue: NDArray[np.int32],
+    step: int,
 ) -> None:
     """Breadth-first from ``goal``; a place's predecessors are all final before it is taken from the queue."""
+    ahead[:] = 2**30
     ahead[goal] = 0
     queue[0] = goal
     head, tail = 0, 1
@@ -54,7 +64,7 @@ def _flood_steps(
         here = queue[head]
         head += 1
         straight = ahead[here] + step
-        for m in range(1, 9):
+        for m in range(1, connectivity + 1):
             there = neighbours[here, m]
             if there < 0:
                 continue
@@ -146,8 +156,8 @@ class GridGraph:
         return spare if spare.times >= times else empty_tables(len(self), times)
 
     def give_back(self, tables: TeamTables) -> None:
-        """Keep tables, empty again, for the next team."""
-        if len(self._spare) < _KEPT_TABLES:
+        """Keep tables, empty again, for the next team, unless there are enough or a long search made them large."""
+        if len(self._spare) < _KEPT_TABLES and _size_of(tables) <= _KEPT_TABLE_BYTES:
             self._spare.append(tables)
 
     def ahead(self, goal: int) -> NDArray[np.int32]:
@@ -157,12 +167,37 @@ class GridGraph:
         """
         if goal in self._ahead:
             return self._ahead[goal]
-        costs = np.full(len(self), UNREACHABLE, np.int32)
-        _flood_steps(self.neighbours, np.int64(goal), costs, np.empty(len(self), np.int32), STEP)
+        costs = np.empty(len(self), np.int32)
+        self._flood(goal, costs)
         if (len(self._ahead) + 1) * costs.nbytes > _CACHED_BYTES:
             self._ahead.clear()
         self._ahead[goal] = costs
         return costs
+
+    def ahead_of_all(self, goals: Sequence[int]) -> NDArray[np.int32]:
+        """Rows (k, n) of :meth:`ahead`; of more than there is room for none is kept, since few would be found again.
+
+        Args:
+            goals: (k,) places.
+        """
+        rows = np.empty((len(goals), len(self)), np.int32)
+        for row, goal in zip(rows, goals, strict=True):
+            if rows.nbytes <= _CACHED_BYTES or goal in self._ahead:
+                row[:] = self.ahead(goal)
+            else:
+                self._flood(goal, row)
+        return rows
+
+    def _flood(self, goal: int, costs: NDArray[np.int32]) -> None:
+        queue = np.empty(len(self), np.int32)
+        _flood_steps(self.neighbours, np.int64(self.connectivity), np.int64(goal), costs, queue, STEP)
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that it takes, with the distances and tables that it keeps [bytes]."""
+        own = (self.blocked, self.cells, self.index, *self.arrays)
+        tables = sum(_size_of(spare) for spare in self._spare)
+        return sum(array.nbytes for array in own) + sum(row.nbytes for row in self._ahead.values()) + tables
 
     def ahead_with(self, goal: int, surcharge: NDArray[np.int32]) -> NDArray[np.int32]:
         """As ``ahead`` where entering a place, or waiting in it, costs ``surcharge`` (n,) units more; not kept."""
@@ -171,18 +206,45 @@ class GridGraph:
         return costs
 
 
+def _size_of(tables: TeamTables) -> int:
+    return sum(array.nbytes for arrays in tables for array in arrays)
+
+
+class _KeptGraphs:
+    """The graphs that were asked for last, as many as there is room for."""
+
+    def __init__(self) -> None:
+        self._graphs: OrderedDict[tuple[object, ...], GridGraph] = OrderedDict()
+        self._lock = threading.Lock()
+
+    def get(self, key: tuple[object, ...], make: Callable[[], GridGraph]) -> GridGraph:
+        """The graph of a key; those that were not asked for longest make room for it."""
+        with self._lock:
+            found = self._graphs.pop(key, None)
+            if found is None:
+                found = make()
+            self._graphs[key] = found
+            sizes = {other: graph.nbytes for other, graph in self._graphs.items()}
+            while len(sizes) > 1 and (len(sizes) > KEPT_GRAPHS or sum(sizes.values()) > KEPT_BYTES):
+                oldest, _ = self._graphs.popitem(last=False)
+                del sizes[oldest]
+            return found
+
+    @property
+    def nbytes(self) -> int:
+        """Memory that all of them take [bytes]."""
+        return sum(graph.nbytes for graph in self._graphs.values())
+
+
+kept_graphs = _KeptGraphs()
+
+
 def grid_graph_of(
     blocked: NDArray[np.bool_], connectivity: int, radius: float, walls: float | None = None
 ) -> GridGraph:
     """The graph of a grid, kept for the next call with an equal grid; arguments as ``GridGraph``'s."""
-    return _cached(np.packbits(blocked).tobytes(), blocked.shape, connectivity, radius, walls)
-
-
-@lru_cache(maxsize=16)
-def _cached(bits: bytes, shape: tuple[int, int], connectivity: int, radius: float, walls: float | None) -> GridGraph:
-    count = shape[0] * shape[1]
-    blocked = np.unpackbits(np.frombuffer(bits, np.uint8), count=count).reshape(shape).astype(np.bool_)
-    return GridGraph(blocked, connectivity, radius, walls)
+    key = np.packbits(blocked).tobytes(), blocked.shape, connectivity, radius, walls
+    return kept_graphs.get(key, lambda: GridGraph(blocked.astype(np.bool_), connectivity, radius, walls))
 
 
 def near_blocked(blocked: NDArray[np.bool_], radius: float) -> NDArray[np.bool_]:

@@ -191,12 +191,12 @@ class Traffic:
     ) -> None:
         self.graph, self.ends = graph, ends
         places, team = len(graph), len(ends)
-        self.ahead = np.empty((team, places), np.int32)
-        self.alone = np.empty(team, np.int64)
-        for robot, (start, goal) in enumerate(ends.tolist()):
-            plain = graph.ahead(goal)
-            self.alone[robot] = int(plain[start]) // int(STEP)
-            self.ahead[robot] = plain if surcharge is None else graph.ahead_with(goal, surcharge)
+        goals = ends[:, 1].tolist()
+        self.ahead = graph.ahead_of_all(goals)
+        self.alone: NDArray[np.int64] = self.ahead[np.arange(team), ends[:, 0]].astype(np.int64) // STEP
+        if surcharge is not None:
+            for robot, goal in enumerate(goals):
+                self.ahead[robot] = graph.ahead_with(goal, surcharge)
         # no layer of states beyond it is ever searched: everyone in turn, in the worst order, is far more than needed
         reached = self.alone[self.alone < int(UNREACHABLE // STEP)]
         self.capacity = int(2 * reached.max(initial=0) + 4 * team + 64)
