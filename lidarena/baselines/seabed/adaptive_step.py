@@ -5,7 +5,7 @@ from typing import Any
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import check_choice, check_range
 from lidarena.baselines.registry import register
-from lidarena.envs.seabed.actions import action_of
+from lidarena.envs.seabed.actions import action_of, skips_to_choose
 from lidarena.envs.seabed.options import MODES
 from lidarena.envs.seabed.scenes import RATE
 from lidarena.vision.step_size import adaptive_step
@@ -26,7 +26,7 @@ class AdaptiveStep:
             threshold: Matches below which the step is halved, 30 to 100 in Bobkov et al.
 
         Raises:
-            ConfigError: An option out of range.
+            ConfigError: An option out of range, or an environment whose actions are overlaps.
         """
         check_range("overlap", overlap, 0.1, 0.99)
         check_range("threshold", threshold, 6, 5000, whole=True)
@@ -35,6 +35,7 @@ class AdaptiveStep:
                 f"threshold = {threshold!r} is below the environment's least_matches, "
                 f"{env.unwrapped.options.least_matches}, under which a step is refused anyway"
             )
+        self._skips = skips_to_choose(env)
         self._options, self._overlap, self._threshold = env.unwrapped.options, overlap, threshold
         self.reset()
 
@@ -56,7 +57,7 @@ class AdaptiveStep:
             self._now = most
         else:
             self._now = min(2 * self._now, most)
-        return action_of(self._options.skips, min(self._now, most), self.mode)
+        return action_of(self._skips, min(self._now, most), self.mode)
 
     def most(self, height: float, speed: float) -> int:
         """The longest step that keeps the overlap [frames]."""
@@ -77,7 +78,7 @@ class AdaptiveSixClouds(AdaptiveStep):
             way: 1 goes on from the position in the middle (more accurate, slower), 2 from the one beyond.
 
         Raises:
-            ConfigError: An option out of range.
+            ConfigError: An option out of range, or an environment whose actions are overlaps.
         """
         check_choice("way", str(way), ("1", "2"))
         self.mode = MODES[2] if int(way) == 1 else MODES[1]

@@ -4,7 +4,7 @@ from typing import Any
 
 from lidarena.base.keyword_checks import check_choice, check_range
 from lidarena.baselines.registry import register
-from lidarena.envs.seabed.actions import action_of
+from lidarena.envs.seabed.actions import action_of, skips_to_choose
 from lidarena.envs.seabed.options import MODES
 
 
@@ -21,11 +21,11 @@ class FixedStep:
             mode: ``"plain"``, ``"six_clouds"`` or ``"six_clouds_to_middle"``.
 
         Raises:
-            ConfigError: An option out of range.
+            ConfigError: An option out of range, or an environment whose actions are overlaps.
         """
         check_range("frames", frames, 1, 10_000, whole=True)
         check_choice("mode", mode, MODES)
-        self._skips, self._frames, self._mode = env.unwrapped.options.skips, frames, mode
+        self._skips, self._frames, self._mode = skips_to_choose(env), frames, mode
         self.reset()
 
     def reset(self, seed: int | None = None) -> None:

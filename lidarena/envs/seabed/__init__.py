@@ -22,7 +22,7 @@ FAMILY = Family(
     },
     measures="lidarena.evaluation.measures.seabed:MEASURES",
     baselines="lidarena.baselines.seabed",
-    agent_options=("observation", "skips"),
+    agent_options=("observation", "skips", "overlaps"),
 )
 
 __getattr__, __dir__ = lazy_names(

@@ -23,10 +23,10 @@ class SeabedEnv(SingleWorld):
     ## Action space
 
     ``MultiDiscrete([16, 3])``: number of the skip in ``skips`` (1 to 96
-    frames), and what is spent: 0 a motion between two pairs, 1 the 6-cloud fit with a position in the middle, 2 the
-    same, ending in the middle. From where a step was refused, the same or a longer one would be refused again: the
-    longest below it is taken in its place, until a step is fine or the shortest was refused, too. (A refused 6-cloud
-    fit leaves open whether two pairs alone would do.)
+    frames) or in ``overlaps``, if those are given, and what is spent: 0 a motion between two pairs, 1 the 6-cloud fit
+    with a position in the middle, 2 the same, ending in the middle. From where a step was refused, the same or a longer
+    one would be refused again: the longest below it is taken in its place, until a step is fine or the shortest was
+    refused, too. (A refused 6-cloud fit leaves open whether two pairs alone would do.)
 
     ## Observation space
 
@@ -91,6 +91,7 @@ class SeabedEnv(SingleWorld):
     | `compass_noise` | float | `0.1` | deviation of the attitude about each axis [degrees] |
     | `velocity_log` | bool | `False` | take the displacement of a Doppler log |
     | `skips` | list of int | `(1, 2, 3, 4, 6, 8, 12, 16, 20, 24, 32, 40, 48, 64, 80, 96)` | frames between positions |
+    | `overlaps` | list of float or None | `None` | chosen instead of skips: shares that two views have in common |
     | `observation` | str or observer | `"navigation"` | what is seen |
     | `reward` | str, dict or function | `"default"` | what a step is worth |
     | `max_episode_steps` | int | `5000` | truncates; -1 never |

@@ -30,7 +30,7 @@ class SeabedEpisodes(OneAgentEpisodes):
     options: SeabedOptions
 
     def __init__(self, worlds: int, options: SeabedOptions) -> None:
-        super().__init__(worlds, options, choose_reward(options.reward, REWARDS), decision_space(options.skips))
+        super().__init__(worlds, options, choose_reward(options.reward, REWARDS), decision_space(options.choices))
         self.vehicles = [Vehicle(options) for _ in range(worlds)]
         self._choose_observation(OBSERVATIONS, lambda _: gym.spaces.Box(0.0, LARGEST, (len(NAMES),), np.float32))
 
@@ -43,11 +43,11 @@ class SeabedEpisodes(OneAgentEpisodes):
         Raises:
             ActionError: See ``decisions_of``.
         """
-        decisions = decisions_of(actions, self.worlds, self.options.skips)
+        decisions = decisions_of(actions, self.worlds, self.options.choices)
         before = [vehicle.frame for vehicle in self.vehicles]
         with self._compilation():
-            for vehicle, (skip, mode) in zip(self.vehicles, decisions, strict=True):
-                vehicle.step(skip, mode)
+            for vehicle, (chosen, mode) in zip(self.vehicles, decisions, strict=True):
+                vehicle.step(int(chosen) if self.options.overlaps is None else vehicle.skip_for(chosen), mode)
         self._note_step()
         covered = [(v.frame - frame) / v.last_frame for v, frame in zip(self.vehicles, before, strict=True)]
         weighed = weigh_terms(

@@ -71,6 +71,7 @@ class SeabedKeywords(CommonKeywords, total=False):
     compass_noise: float
     velocity_log: bool
     skips: Sequence[int]
+    overlaps: Sequence[float] | None
 
 
 @dataclass(frozen=True)
@@ -98,6 +99,8 @@ class SeabedOptions:
         compass_noise: Standard deviation of the attitude about each axis [degrees].
         velocity_log: Take the displacement of a (perfect) Doppler log.
         skips: Frames between computed positions that can be chosen.
+        overlaps: Chosen instead of skips, if given: the longest of ``skips`` is taken by which, as far as is known,
+            two views have so much in common.
         observation: ``"navigation"``, or one's own.
         reward: ``"default"``, weights of the terms ``drift``, ``compute``, ``refused``, ``progress``, or a function.
         max_episode_steps: Decisions after which an episode is truncated; -1 never, None the usual 5000.
@@ -123,6 +126,7 @@ class SeabedOptions:
     compass_noise: float = 0.1
     velocity_log: bool = False
     skips: Sequence[int] = SKIPS
+    overlaps: Sequence[float] | None = None
     observation: ObservationSpec = "navigation"
     reward: RewardSpec = "default"
     max_episode_steps: int = 5000
@@ -141,6 +145,7 @@ class SeabedOptions:
         choose_observer(options.observation, OBSERVATIONS)
         options._check_clearance()
         options._check_skips()
+        options._check_overlaps()
         return options
 
     def _check_clearance(self) -> None:
@@ -157,6 +162,19 @@ class SeabedOptions:
             raise ConfigError(f"skips = {self.skips!r} must be a list of whole numbers of frames from 1 to 10000")
         if list(self.skips) != sorted(set(self.skips)):
             raise ConfigError(f"skips = {self.skips!r} must rise")
+
+    def _check_overlaps(self) -> None:
+        if self.overlaps is None:
+            return
+        if not isinstance(self.overlaps, list | tuple) or len(self.overlaps) == 0:
+            raise ConfigError(f"overlaps = {self.overlaps!r} must be a list of shares of the view")
+        for number, overlap in enumerate(self.overlaps):
+            check_range(f"overlaps[{number}]", overlap, 0.0, 0.99)
+
+    @property
+    def choices(self) -> Sequence[int] | Sequence[float]:
+        """What the first number of an action counts: skips, or overlaps."""
+        return self.skips if self.overlaps is None else self.overlaps
 
     @property
     def kinds(self) -> list[SceneKind]:

@@ -6,11 +6,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
+from lidarena.envs.seabed.actions import longest_skip
 from lidarena.envs.seabed.compute import detection_cost, effort_cost
 from lidarena.envs.seabed.options import MODES, SeabedOptions
 from lidarena.envs.seabed.scenes import RATE, Scene, frame_store, make_scene
 from lidarena.vision.odometry import Effort, Instruments, StereoOdometry
 from lidarena.vision.rigid_motion import inverse, motion_of, rotation_of, vector_of
+from lidarena.vision.step_size import adaptive_step
 
 Floats = NDArray[np.float64]
 
@@ -86,6 +88,16 @@ class Vehicle:
             self._seen.add(frame)
             self.cost += detection_cost(self.options.odometry.features, self.camera.width, self.camera.height)
         return self.store.look(self.kind, self.scene, frame)
+
+    def skip_for(self, overlap: float) -> int:
+        """The longest skip by which two views have so much in common, as far as is known [frames]."""
+        frames = adaptive_step(self.camera, self.known_depth, max(self.speed, 0.02), RATE, overlap)
+        return int(self.options.skips[longest_skip(self.options.skips, frames)])
+
+    @property
+    def known_depth(self) -> float:
+        """Distance to the nearest ground that is seen, or nearly none while nothing is [m]."""
+        return max(float(np.nan_to_num(self.odometry.depth)), 0.1)
 
     def _guess(self, frames: int) -> Floats:
         """About the motion over so many frames, if the vehicle goes on as before."""

@@ -14,6 +14,7 @@ SKIPS = (2, 5, 20)
 def test_actions_are_numbers_of_skips_and_modes() -> None:
     assert decision_space(SKIPS).nvec.tolist() == [3, 3]
     assert decisions_of([[0, 0], [2, 2]], 2, SKIPS) == [(2, "plain"), (20, "six_clouds_to_middle")]
+    assert decisions_of([[1, 0]], 1, (0.75, 0.5)) == [(0.5, "plain")]
 
 
 @pytest.mark.parametrize(("frames", "number"), [(1, 0), (2, 0), (4.9, 0), (5, 1), (19, 1), (500, 2)])

@@ -8,7 +8,8 @@ import pytest
 from gymnasium.utils.env_checker import check_env
 from stable_baselines3.common.env_checker import check_env as check_for_sb3
 
-from lidarena.base.errors import ActionError
+from lidarena import baselines
+from lidarena.base.errors import ActionError, ConfigError
 from tests.envs.seabed.short_flights import SHORT, made
 
 
@@ -96,3 +97,18 @@ def test_seeds_choose_seabeds_only_where_asked_to() -> None:
     for env in (drawn, by_seed):
         env.reset(seed=0)
     assert drawn.episodes.vehicles[0].number == 2**31 and by_seed.episodes.vehicles[0].number == 0
+
+
+def test_an_overlap_may_be_chosen_instead_of_a_skip() -> None:
+    env, plain = made(overlaps=[0.9, 0.6]), made()
+    skips = []
+    for number in (0, 1):
+        _, info = env.reset(seed=0)
+        rule = baselines.make("adaptive_step", plain, overlap=(0.9, 0.6)[number])
+        wanted = plain.unwrapped.options.skips[rule.act(None, info)[0]]  # type: ignore[attr-defined]
+        info = env.step(np.array([number, 0]))[4]
+        assert info["skip"] == wanted
+        skips.append(info["skip"])
+    assert env.action_space.nvec.tolist() == [2, 3] and skips[0] < skips[1]
+    with pytest.raises(ConfigError, match="chooses skips, but the environment's actions are overlaps"):
+        baselines.make("fixed_step", env)

@@ -36,6 +36,8 @@ def test_both_scenes_may_be_flown_over() -> None:
         ({"skips": 5}, "must be a list of whole numbers"),
         ({"skips": [5, 3]}, "must rise"),
         ({"skips": []}, "must be a list"),
+        ({"overlaps": 0.7}, "must be a list of shares"),
+        ({"overlaps": [0.7, 1.5]}, r"overlaps\[1\] = 1.5"),
         ({"angles": "fused"}, "angles = 'fused'"),
         ({"compass_noise": 0.0}, "compass_noise = 0.0"),
         ({"count": 5}, "count = 5"),
