@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from lidarena.baselines.corridor.robot_interface import FleetState
 from lidarena.envs.corridor.options import ROBOT
+from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.precedence import Precedence
 from lidarena.world.robots import RobotSpec
 
@@ -18,15 +19,57 @@ _TURN_FIRST = 0.9  # with a larger bearing it turns on the spot (rad)
 _STILL = 0.02  # nearer than this to its target it rests (m)
 
 
-def steer_to(pose: Floats, target: Floats, robot: RobotSpec = ROBOT) -> tuple[float, float]:
-    """Return the speed [m/s] and turn rate [rad/s] that take a robot at a pose (3,) to a point (2,) nearby."""
+_TURN_FIRST_WHERE_NARROW = 0.2  # where there is no room for an arc (rad)
+_SLOW = 0.12  # no faster than this there (m/s)
+_NARROW = 0.06  # less room than this beside a robot leaves none (m)
+_LEAST_CUT = 0.01  # by so much a robot may always leave its path, or it would never get round a corner (m)
+
+
+def centred(paths: list[NDArray[np.int64]], grid: FloorGrid, radius: float) -> tuple[list[Floats], list[Floats] | None]:
+    """Return paths of cells as curves in the middle of narrow places, and the room beside a robot at their points.
+
+    Args:
+        paths: (T, 2) [row, column] of each robot.
+        grid: Where they were planned; without a clearance its cells' centres are the curves, and the room is not known.
+        radius: Of the robots [m].
+    """
+    curves = [grid.points(path) for path in paths]
+    if grid.clearance is None:
+        return curves, None
+    away = np.pad(grid.clearance.astype(np.float64), 1)
+    room = []
+    for path, curve in zip(paths, curves, strict=True):
+        row, col = path.T + 1
+        room.append(away[row, col] - radius)
+        for axis, (dr, dc) in enumerate(((0, 1), (1, 0))):
+            one, other = away[row - dr, col - dc], away[row + dr, col + dc]
+            # beside the ridge of the clearance the two differ by twice the way to it
+            beside = (
+                (room[-1] < _NARROW) & (np.minimum(one, other) > 0.0) & (np.maximum(one, other) < away[row, col] + 1e-3)
+            )
+            most = 0.5 * grid.resolution
+            curve[:, axis] += np.where(beside, np.clip(0.5 * (other - one), -most, most), 0.0)
+    return curves, room
+
+
+def steer_to(
+    pose: Floats, target: Floats, robot: RobotSpec = ROBOT, turn_first: float = _TURN_FIRST
+) -> tuple[float, float]:
+    """Return the speed [m/s] and turn rate [rad/s] that take a robot to a point nearby.
+
+    Args:
+        pose: (3,) of the robot.
+        target: (2,) the point [m].
+        robot: What it is like.
+        turn_first: With a larger bearing it turns on the spot [rad].
+    """
     dx, dy = target[0] - pose[0], target[1] - pose[1]
     away = math.hypot(dx, dy)
     if away < _STILL:
         return 0.0, 0.0
     bearing = math.remainder(math.atan2(dy, dx) - pose[2], 2.0 * math.pi)
     rate = min(max(_TURN_GAIN * bearing, -robot.max_turn_rate), robot.max_turn_rate)
-    if abs(bearing) > _TURN_FIRST:
+    if abs(bearing) > turn_first:
         return 0.0, rate
     return min(away / _RESPONSE, robot.max_speed) * math.cos(bearing), rate
 
@@ -74,14 +117,18 @@ class OrderedDriving:
         curves: (T, 2) points of each robot, one a step of the plan [m].
         precedence: The plan's order.
         radius: Of the robots [m].
+        room: (T,) what is free beside a robot at each point of its curve [m]; None: enough to cut corners.
 
     Attributes:
         completed: (k,) steps that each robot has completed.
         waits: Pairs (i, j) at the last call of ``commands``: robot i waited for robot j.
     """
 
-    def __init__(self, curves: list[Floats], precedence: Precedence, radius: float) -> None:
+    def __init__(
+        self, curves: list[Floats], precedence: Precedence, radius: float, room: list[Floats] | None = None
+    ) -> None:
         self.curves, self._precedence, self._apart = curves, precedence, 2.0 * radius + _GAP
+        self._room = room
         self.completed = np.zeros(len(curves), np.int64)
         self.waits: tuple[tuple[int, int], ...] = ()
 
@@ -112,7 +159,11 @@ class OrderedDriving:
         commands = np.zeros((len(self.curves), 2))
         for robot in np.flatnonzero(state.active).tolist():
             target, blocking_agents = self._target(robot)
-            speed, rate = steer_to(state.poses[robot], self.curves[robot][target])
+            target = self._without_cutting(robot, target, state.poses[robot, :2])
+            narrow = self._room is not None and self._room[robot][target] < _NARROW
+            turn_first = _TURN_FIRST_WHERE_NARROW if narrow else _TURN_FIRST
+            speed, rate = steer_to(state.poses[robot], self.curves[robot][target], turn_first=turn_first)
+            speed = min(speed, _SLOW) if narrow else speed
             ahead = self._in_the_way(robot, speed, state)
             commands[robot] = (0.0 if ahead else speed), rate
             waits += [(robot, int(other)) for other in {*blocking_agents, *ahead}]
@@ -139,6 +190,21 @@ class OrderedDriving:
             travelled += float(np.hypot(*(curve[step + 1] - curve[step])))
             step += 1
         return step, nobody
+
+    def _without_cutting(self, robot: int, target: int, position: Floats) -> int:
+        """The farthest point up to ``target`` to which the straight way leaves the path no farther than is free."""
+        first, curve = int(self.completed[robot]), self.curves[robot]
+        if self._room is None:
+            return target
+        for point in range(target, first, -1):
+            way, passed = curve[point] - position, curve[first:point] - position
+            length = max(float(np.hypot(*way)), 1e-9)
+            along = np.clip(passed @ way / length**2, 0.0, 1.0)
+            aside = np.hypot(*(passed - along[:, None] * way).T)
+            allowed = np.maximum(self._room[robot][first:point] - _LEAST_CUT, _LEAST_CUT)
+            if (aside <= allowed).all():
+                return point
+        return first if float(np.hypot(*(curve[first] - position))) >= _STILL else min(first + 1, target)
 
     def remaining(self, robot: int) -> Floats:
         """The points (n, 2) that a robot still has to pass."""

@@ -17,7 +17,7 @@ from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.plan import Method, plan_team
 from lidarena.planning.team.team_plan import TeamPlan
 
-_SPARE = (0.05, 0.02, 0.0)
+_SPARE = (0.05, 0.02, 0.012, 0.0)
 """Room beside the robots that discs have where larger ones do not fit [m]."""
 ROOM = 0.2
 """Robots are planned as discs of at least this radius [m]."""
@@ -29,6 +29,8 @@ _COMFORT, _WALL_COST = 0.5, 1.0
 
 def wall_costs(grid: FloorGrid) -> NDArray[np.float64]:
     """Return what being in a cell costs besides the step, (rows, cols) in steps: more beside walls."""
+    if grid.clearance is not None:  # in narrow corridors the middle counts, not which cells their walls touch
+        return np.asarray(_WALL_COST * np.clip(1.0 - grid.clearance.astype(np.float64) / _COMFORT, 0.0, 1.0))
     occupancy = np.where(grid.blocked, 100, 0).astype(np.int8)
     away = clearance(occupancy, grid.resolution, reach=_COMFORT + grid.resolution).astype(np.float64)
     return _WALL_COST * np.clip(1.0 - away / _COMFORT, 0.0, 1.0)

@@ -23,6 +23,9 @@ CELL = 0.2
 """Side of the cells that teams are planned on, Bennewitz & Burgard's [m]."""
 FINER = (0.1, 0.05, 0.025)
 """Sides of the cells where robots fit through doors and corridors that those of ``CELL`` do not show [m]."""
+_CENTRED = (0.02, 0.012, 0.0)
+"""Room beside the robots for which finer cells must show a way, tried in this order [m]: coarse ones lead along a wall.
+On the finest cells there is a way with the second wherever a robot has 2.5 cm on either side."""
 _MOST_CELLS = 2**21
 LEAST_ROOM = 0.2
 """Random places leave every robot at least a disc of this radius [m]."""
@@ -56,7 +59,8 @@ class StartGoalSampler:
         self._fixed = self._given()
         self._candidates = np.empty(0, np.int64)
         for self._strict in (True, False):
-            for cell in self._sides():
+            for cell, beside in self._choices():
+                self._beside = beside
                 self.grid = FloorGrid.of(plan, cell, exact=cell < CELL)
                 try:
                     self._look_at()
@@ -65,11 +69,12 @@ class StartGoalSampler:
                     refusal = error
         raise refusal
 
-    def _sides(self) -> list[float]:
-        """Sides of cells to try, the coarsest first, as far as memory allows [m]."""
+    def _choices(self) -> list[tuple[float, float]]:
+        """Sides of cells to try, as far as memory allows, and the room beside the robots that they must show [m]."""
         low_x, low_y, high_x, high_y = self._plan.bounds
         area = (high_x - low_x) * (high_y - low_y)
-        return [CELL, *(cell for cell in FINER if area / cell**2 <= _MOST_CELLS)]
+        finer = [cell for cell in FINER if area / cell**2 <= _MOST_CELLS]
+        return [(CELL, 0.0), *((cell, beside) for beside in _CENTRED for cell in finer)]
 
     def _look_at(self) -> None:
         """Find out where robots can start and go on the grid; raises if they cannot."""
@@ -260,7 +265,7 @@ class StartGoalSampler:
                     )
 
     def _check_reachable(self, starts: NDArray[np.float64], goals: NDArray[np.float64]) -> None:
-        graph, points = (self.grid.graph(radius) for radius in (self._options.robot.radius, 0.0))
+        graph, points = (self.grid.graph(radius) for radius in (self._options.robot.radius + self._beside, 0.0))
         for robot, (start, goal) in enumerate(zip(starts, goals, strict=True)):
             if _leads(graph, self.grid, start, goal, self._strict):
                 continue
