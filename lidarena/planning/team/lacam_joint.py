@@ -237,7 +237,9 @@ class JointSearch:
     def _grow(self) -> None:
         room = min(2 * len(self.nodes.parent), self._most)
         self.nodes = with_more_room(self.nodes, room, 2 * len(self.nodes.edges))
-        self._heap = open_nodes(self.nodes, self._breadth)
+        keys, items, size = self._heap  # with how often each was gone on from, which open_nodes does not know
+        more = len(self.nodes.parent) + 1 - len(keys)
+        self._heap = np.pad(keys, (0, more)), np.pad(items, (0, more)), size
 
     def join(self, other: "JointSearch", from_here: bool) -> None:
         """Enter the way from where both met on to the other one's end, and that end as the goal.

@@ -4,7 +4,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from lidarena.planning.team.lacam_joint import next_joint_move, open_nodes
+from lidarena.planning.team.lacam_joint import GOES_ON, JointSearch, next_joint_move, open_nodes
 from lidarena.planning.team.lacam_nodes import add_node, empty_nodes, find_slot
 from lidarena.planning.team.pibt import team_step
 from tests.planning.team.problems import Problem, crowded, faults, meet, plan, traffic_of
@@ -61,13 +61,32 @@ def test_the_oracle_agrees_with_a_search_through_all_arrangements(oracle) -> Non
 
 
 def test_crowds_on_a_few_cells_are_solved_where_there_is_a_plan(oracle) -> None:
-    for seed in range(26):
+    for seed in range(40):
         problem = crowd(seed)
         found = plan(problem, "prioritized_search", time_limit=INFINITE, iterations=100, seed=seed)
         if found.solved:
             assert not faults(problem, found)
         else:
             assert not oracle(*problem), (seed, found.message)
+
+
+def test_a_search_that_grows_remembers_how_often_it_went_on_from_where() -> None:
+    traffic = traffic_of(crowd(26))
+    nodes = empty_nodes(len(traffic), 64, 128)
+    step, ranks = team_step(traffic.graph.arrays, traffic.ends[:, 1], 0), np.arange(len(traffic))
+    nodes.order[0] = ranks
+    starts = np.ascontiguousarray(traffic.ends[:, 0], np.int32)
+    add_node(nodes, starts, find_slot(nodes, starts)[0], -1, traffic.ahead, traffic.ends[:, 1], ranks)
+    search = JointSearch(traffic.graph.arrays, traffic.ahead, nodes, step, ranks, 4096)
+    to_starts = np.stack([traffic.graph.ahead(int(start)) for start in starts])
+    back = JointSearch.back(traffic.graph.arrays, to_starts, traffic.ends, ranks, 4096)
+    while search.run(back, 1) == GOES_ON and len(search.nodes.parent) == 64:
+        count = int(search._heap[2][0])
+        before = sorted(zip(search._heap[1][:count].tolist(), search._heap[0][:count].tolist(), strict=True))
+    assert len(search.nodes.parent) == 128
+    count = int(search._heap[2][0])
+    assert sorted(zip(search._heap[1][:count].tolist(), search._heap[0][:count].tolist(), strict=True)) == before
+    assert any(key % 4 for _, key in before)  # some were gone on from
 
 
 def test_where_nothing_is_left_to_try_the_search_ends() -> None:
