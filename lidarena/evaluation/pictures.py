@@ -136,7 +136,8 @@ def _draw_progress(axes: "Axes", row: Sequence[Cell]) -> None:
         colour, dashes = line_of(index)
         axes.plot(times, mean, dashes, color=colour, label=cell.policy.title)
         axes.fill_between(times, low, high, color=colour, alpha=0.15, linewidth=0)
-    axes.set_title(f"{row[0].env.label} ({len(row[0].episodes)} episodes each)", fontsize=10)
+    count = len(row[0].episodes)
+    axes.set_title(f"{row[0].env.label} ({count} {'episode' if count == 1 else 'episodes'} each)", fontsize=10)
     axes.set_xlabel("time (s)")
     axes.set_ylabel(measure.label)
     if measure.unit == "%":

@@ -105,7 +105,7 @@ def markdown_text(rows: Sequence[Row]) -> str:
     sections = []
     for group in by_env(rows):
         measures = _measured(group)
-        sections.append(f"## {_cell(group[0].env)} ({_episodes(group)})\n")
+        sections.append(f"## {_cell(group[0].env)} ({counted_episodes(group)})\n")
         winners = {measure.name: best(group, measure) for measure in measures}
 
         def absolute(row: Row, measure: Measure, winners: dict[str, set[str]] = winners) -> str:
@@ -131,7 +131,7 @@ def latex_text(rows: Sequence[Row]) -> str:
         lines.append(r"\midrule")
         for place, row in enumerate(group):
             cells = [_latex_cell(row, measure, group) for measure in measures]
-            env = _latex(f"{row.env} ({_episodes(group)})") if place == 0 else ""
+            env = _latex(f"{row.env} ({counted_episodes(group)})") if place == 0 else ""
             lines.append(" & ".join([env, _latex(row.policy), *cells]) + r" \\")
     return (
         "\n".join([*lines, r"\bottomrule", r"\end{tabular}", *(f"% {line}" for line in _latex(note(rows)).split(". "))])
@@ -161,7 +161,7 @@ def _terminal_table(group: Sequence[Row], width: int) -> Table:
 
 def _drawn(group: Sequence[Row], form: "_Form") -> Table:
     measures = [measure for measure in _measured(group) if measure.main][:PRINTED]
-    table = Table(title=Text(f"{group[0].env} · {_episodes(group)} each"), title_justify="left", box=SIMPLE_HEAD)
+    table = Table(title=Text(f"{group[0].env} · {counted_episodes(group)} each"), title_justify="left", box=SIMPLE_HEAD)
     table.pad_edge, table.show_edge, table.collapse_padding = False, False, True
     table.add_column("", overflow="fold")
     for measure in measures:
@@ -184,7 +184,7 @@ def _listed(names: Sequence[str]) -> str:
     return f"{', '.join(names[:-1])} and {names[-1]}" if len(names) > 1 else names[0]
 
 
-def _episodes(group: Sequence[Row]) -> str:
+def counted_episodes(group: Sequence[Row]) -> str:
     """Such as ``"20 episodes"``, or ``"149 of 150 maps"`` where one could not be used by somebody."""
     row = group[0]
     count, what = row.episodes, "map" if row.maps else "episode"

@@ -25,8 +25,8 @@ class SeabedEnv(SingleWorld):
     ``MultiDiscrete([16, 3])``: number of the skip in ``skips`` (1 to 96
     frames) or in ``overlaps``, if those are given, and what is spent: 0 a motion between two pairs, 1 the 6-cloud fit
     with a position in the middle, 2 the same, ending in the middle. From where a step was refused, the same or a longer
-    one would be refused again: the longest below it is taken in its place, until a step is fine or the shortest was
-    refused, too. (A refused 6-cloud fit leaves open whether two pairs alone would do.)
+    one would be refused again: the longest of at most half of it is taken in its place, until a step is fine or the
+    shortest was refused, too. (A refused 6-cloud fit leaves open whether two pairs alone would do.)
 
     ## Observation space
 

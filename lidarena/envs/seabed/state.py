@@ -134,9 +134,9 @@ class Vehicle:
         self.drift, self.spent = float(np.linalg.norm(self._error() - before)), self.cost - cost
 
     def _shortened(self, skip: int, mode: str) -> int:
-        """The skip, or the longest one below what was refused from here: the same pictures would be refused again."""
+        """The skip, or the longest one of at most half of what was refused from here, as Bobkov et al. go on."""
         limit = self.refused_from[int(mode != MODES[0])]
-        return skip if skip < limit else max(one for one in self.options.skips if one < limit)
+        return skip if skip < limit else int(self.options.skips[longest_skip(self.options.skips, limit / 2)])
 
     def _limit(self, fine: bool, mode: str) -> None:
         """Note what is not to be tried again from here; where even the shortest step was refused, all may be."""

@@ -15,7 +15,7 @@ from lidarena.evaluation.report.answer import answers, headline
 from lidarena.evaluation.report.interval_table import interval_table
 from lidarena.evaluation.report.sources import Figure, Player, ReportContent
 from lidarena.evaluation.results import Row
-from lidarena.evaluation.tables import by_env, note
+from lidarena.evaluation.tables import by_env, counted_episodes, note
 
 REPORT_FILE = "report.html"
 _PAGE = Template("""<!DOCTYPE html>
@@ -85,7 +85,7 @@ def _answer(content: ReportContent) -> str:
 def _tables(rows: Sequence[Row]) -> str:
     parts = ["<section id='tables'><h2>Results</h2><p class='hint'>Click on a heading to sort.</p>"]
     for group in by_env(rows):
-        parts.append(f"<h3>{escape(group[0].env)} <small>{group[0].episodes} episodes each</small></h3>")
+        parts.append(f"<h3>{escape(group[0].env)} <small>{counted_episodes(group)} each</small></h3>")
         parts.append(f"<div class='wide'>{interval_table(group)}</div>")
         every = interval_table(group, main=False)
         parts.append(f"<details><summary>All measures</summary><div class='wide'>{every}</div></details>")

@@ -40,7 +40,7 @@ class GoalChoiceEnv(SingleWorld):
 
     | Term | Value | `preference` |
     |------|-------|------|
-    | explored | gain in completeness | 1 |
+    | explored | gain in completeness | 5 |
     | path | minus the path driven, over that which is usual in a floor plan of this size | 1 |
     | time | minus 0.03 m for every second, over the same | 1 |
     | uncertainty | minus (0.05 + 2.5 preference) times the gain in completeness times ln(D / 1e-4) | 1 |

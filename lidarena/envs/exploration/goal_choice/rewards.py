@@ -18,7 +18,7 @@ SECOND = 0.03
 
 REWARDS = RewardTerms(
     ("explored", "path", "time", "uncertainty", "collision"),
-    {"preference": {"explored": 1.0, "path": 1.0, "time": 1.0, "uncertainty": 1.0, "collision": 5.0}},
+    {"preference": {"explored": 5.0, "path": 1.0, "time": 1.0, "uncertainty": 1.0, "collision": 5.0}},
 )
 """See ``GoalChoiceTerms``."""
 
@@ -26,8 +26,7 @@ REWARDS = RewardTerms(
 class GoalChoiceTerms:
     """The terms of a chooser's reward, added up over the decision periods of its step.
 
-    - ``explored``: the gain in map completeness, from 0 to 1; about what the way to it costs. More would only add to
-      what a critic has to foretell, since an episode ends when nothing is left.
+    - ``explored``: the gain in map completeness, from 0 to 1.
     - ``path``: -Δs / s_A; s is the path by odometry, s_A = 0.55/m · A what is usual in a floor plan of the area A.
     - ``time``: -0.03 m/s · Δt / s_A.
     - ``uncertainty``: -(0.05 + 2.5 p) Δc ln(D / 1e-4): p is the preference, Δc the gain in completeness, D the
