@@ -47,7 +47,7 @@ class ChoosingExplorer:
         preference: float = 0.5,
         candidates: int = 24,
         places: int = 6,
-        least_frontier: float = 0.2,
+        least_frontier: float = GoalChoiceOptions.least_frontier,
         choice_period: float = GoalChoiceOptions.choice_period,
     ) -> None:
         """Make it for an exploration environment.
