@@ -91,7 +91,7 @@ class Floorplan:
             name: What messages and pictures call it.
             occupied: ``[row, column]``, row 0 at the smallest y.
             resolution: Side of a cell [m].
-            origin: Pose of the lower-left corner of cell [0, 0] [m, m, rad].
+            origin: Pose x, y, yaw [m, m, rad] of the lower-left corner of cell [0, 0].
             start: Default start pose; None takes the place farthest from every wall in the largest
                 connected part.
 
