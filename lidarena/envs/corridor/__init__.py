@@ -47,7 +47,10 @@ FAMILY = Family(
     },
     measures="lidarena.evaluation.measures.corridor:MEASURES",
     baselines="lidarena.baselines.corridor",
-    agent_options=("observation", "action", "neighbours", "lidar.beams", "lidar.max_range", "lidar.field_of_view"),
+    agent_options=(
+        *("observation", "action", "neighbours", "guard"),
+        *("lidar.beams", "lidar.max_range", "lidar.field_of_view"),
+    ),
     keywords_of_0_1="lidarena.envs.corridor.options:modern_keywords",
 )
 

@@ -47,7 +47,7 @@ _LIMITS = Limits(
         "goal_tolerance": (0.02, 1.0),
     },
     whole={"robots": (1, MOST_ROBOTS), "neighbours": (0, MOST_ROBOTS)},
-    switches=("collision_ends", "expose_truth"),
+    switches=("collision_ends", "guard", "expose_truth"),
 )
 
 
@@ -63,6 +63,7 @@ class CorridorKeywords(CommonKeywords, total=False):
     robot: RobotSpec | Mapping[str, Any] | str | None
     lidar: LidarSpec | Mapping[str, Any] | str | None
     neighbours: int
+    guard: bool
     motion_noise: float
     localization_noise: float
     stall_rate: float
@@ -94,6 +95,8 @@ class CorridorOptions:
         lidar: Its lidar, the same with the presets of :data:`lidarena.world.lidars.LIDARS` and the ``LidarSpec`` that
             it stands for.
         neighbours: How many of the nearest robots tell each robot where they are and how they move.
+        guard: Whether robots slow down by themselves before what their lidar shows, see
+            :func:`lidarena.envs.corridor.guard.guard_speeds`; they see all around then.
         motion_noise: Factor on the noise of the wheels (see ``corridor_kernels.apply_motion_noise``); 0 = they obey.
         localization_noise: Standard deviation of ``info["pose"]``: metres, and for the heading radians.
         stall_rate: How often a robot is held up for some 3 s, by nobody's fault [1/s].
@@ -120,6 +123,7 @@ class CorridorOptions:
     robot: RobotSpec = ROBOT
     lidar: LidarSpec = LIDAR
     neighbours: int = 0
+    guard: bool = False
     motion_noise: float = 1.0
     localization_noise: float = 0.02
     stall_rate: float = 0.0
@@ -148,6 +152,10 @@ class CorridorOptions:
         check_range("robot.radius", robot.radius, 0.01, _LARGEST_RADIUS)
         lidar = make_lidar(given.get("lidar"), LIDAR, options.decision_period)
         check_range("lidar.max_range", lidar.max_range, *_LIDAR_RANGES)
+        if options.guard and not lidar.sees_all_around:
+            raise ConfigError(
+                f"guard=True needs a lidar that sees all around, but lidar.field_of_view = {lidar.field_of_view:g} rad"
+            )
         return replace(options, robot=robot, lidar=lidar)
 
     @property

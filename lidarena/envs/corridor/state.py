@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
+from lidarena.envs.corridor.guard import guard_speeds
 from lidarena.envs.corridor.kernels import (
     Ground,
     MotionNoise,
@@ -164,9 +165,13 @@ class CorridorCore:
         """Drive every robot for one decision period.
 
         Args:
-            commands: (worlds, robots, 2) speed [m/s] and turn rate [rad/s]; changed into what the wheels do.
+            commands: (worlds, robots, 2) speed [m/s] and turn rate [rad/s]; changed into what the wheels do, after the
+                guard's say where there is one.
         """
         before, period = self.physics.poses.copy(), self.options.decision_period
+        if self.options.guard:
+            scans, reach = self.measurements.scans, self.beam.max_range
+            guard_speeds(scans, self.lidar.directions, reach, self.robot.radius, period, commands)
         apply_motion_noise(
             commands, period, self._noise, self.options.stall_rate, self.streams, self._speed_bias, self._stalled
         )
