@@ -29,7 +29,7 @@ def slow_guard(scan: NDArray[np.float32], speed: float, rate: float) -> float:
     heading = 0.5 * rate * PERIOD
     ahead = np.array([np.cos(heading), np.sin(heading)])
     gaps = np.hypot(*points.T) - RADIUS
-    least = np.where(gaps > 2 * MARGIN, MARGIN + 0.5 * (gaps - MARGIN), 0.75 * gaps)
+    least = np.where(gaps > MARGIN, MARGIN + 0.5 * (gaps - MARGIN), gaps)
     allowed = 0.0
     for share in SHARES:
         after = np.hypot(*(points - SLACK * share * speed * PERIOD * ahead).T) - RADIUS
@@ -56,10 +56,10 @@ def test_who_drives_along_a_wall_or_away_from_it_is_hardly_held_up() -> None:
         return np.asarray(np.minimum((RADIUS + gap) / across, REACH), np.float32)
 
     assert guarded(beside(0.1), 0.5, 0.0)[0] == pytest.approx(0.5)
-    assert guarded(beside(0.03), 0.5, 0.0)[0] > 0.1
-    assert guarded(beside(0.03), 0.5, 1.0)[0] > 0.2  # to the left
-    assert guarded(beside(0.03), 0.5, -1.0)[0] < 0.15
-    assert guarded(beside(0.03), -0.5, -1.0)[0] < -0.2  # its way back leads to the left
+    assert guarded(beside(0.06), 0.5, 0.0)[0] > 0.3
+    assert guarded(beside(0.06), 0.5, 1.0)[0] > 0.4  # to the left
+    assert guarded(beside(0.06), 0.5, -1.0)[0] < 0.15
+    assert guarded(beside(0.06), -0.5, -1.0)[0] < -0.4  # its way back leads to the left
 
 
 def test_what_is_nearer_than_the_lidar_measures_is_not_driven_at() -> None:
