@@ -20,6 +20,10 @@ from lidarena.agents.observation_normalizer import keys_to_normalize
 from lidarena.agents.training_config import TrainingConfig
 from lidarena.base.errors import ConfigError
 
+_GAUSSIAN: tuple[Algorithm, ...] = ("PPO", "RecurrentPPO")
+"""Those whose continuous actions have deviations of their own, whatever is observed."""
+_PREFERENCE = 3.0
+"""Of an untrained policy for the action that it is to begin with, as a difference of logarithms."""
 _CHOICES = (spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary)
 
 
@@ -98,8 +102,31 @@ def make_model(config: TrainingConfig, env: VecEnv) -> BaseAlgorithm:
         except (AssertionError, ValueError, MemoryError) as error:
             reason = (str(error) or type(error).__name__).splitlines()[0]
             raise ConfigError(f"{config.algorithm} cannot learn in {config.env.id!r}: {reason}") from None
+    if config.policy.first_action is not None:
+        prefer(model, config.policy.first_action)
     env.seed(first_world_seed(config.seed))
     return model
+
+
+def prefer(model: BaseAlgorithm, action: int | list[int]) -> None:
+    """Let an untrained policy mostly take one action; see ``PolicyConfig.first_action``.
+
+    Raises:
+        ConfigError: Its actions are no choices, it has no probabilities, or there is no such action.
+    """
+    space, net = model.action_space, getattr(model.policy, "action_net", None)
+    sizes = [int(space.n)] if isinstance(space, spaces.Discrete) else getattr(space, "nvec", np.empty(0)).tolist()
+    numbers = action if isinstance(action, list) else [action]
+    if not sizes or not isinstance(net, torch.nn.Linear):
+        raise ConfigError(
+            f"'policy.first_action' is for policies that draw among discrete actions, not for {type(model).__name__} "
+            f"with actions {space}"
+        )
+    if len(numbers) != len(sizes) or not all(0 <= one < size for one, size in zip(numbers, sizes, strict=False)):
+        raise ConfigError(f"'policy.first_action' is {action}, but the actions are {space}")
+    first = np.cumsum([0, *sizes[:-1]])
+    with torch.no_grad():
+        net.bias[first + np.array(numbers)] += _PREFERENCE
 
 
 def check_fit(config: TrainingConfig, env: VecEnv) -> None:
@@ -115,6 +142,7 @@ def check_fit(config: TrainingConfig, env: VecEnv) -> None:
             f"'algorithm' is {config.algorithm}, which takes actions of {' or '.join(one.__name__ for one in wanted)}, "
             f"but {config.env.id!r} has {space}; {_allowed(fitting)}"
         )
+    _check_deviation(config, space)
     if isinstance(space, spaces.Discrete) and space.start != 0:
         raise ConfigError(f"{config.env.id!r} has actions {space}, but only those that begin at 0 can be learned")
     if isinstance(space, spaces.Box) and not space.is_bounded():
@@ -123,6 +151,16 @@ def check_fit(config: TrainingConfig, env: VecEnv) -> None:
         raise ConfigError(
             f"'algorithm' is MaskablePPO, but {config.env.id!r} has no action_masks(); {_allowed(['PPO'])}"
         )
+
+
+def _check_deviation(config: TrainingConfig, space: spaces.Space[Any]) -> None:
+    """Refuse ``log_std_init`` where there is no such deviation."""
+    if config.policy.log_std_init is None or (isinstance(space, spaces.Box) and config.algorithm in _GAUSSIAN):
+        return
+    raise ConfigError(
+        f"'policy.log_std_init' is for continuous actions of {' or '.join(_GAUSSIAN)}, not for {config.algorithm} with "
+        f"actions {space}"
+    )
 
 
 def _allowed(algorithms: list[Algorithm]) -> str:
@@ -160,6 +198,8 @@ def _network(config: TrainingConfig) -> dict[str, Any]:
         "optimizer_class": Adam,
         "optimizer_kwargs": adam,
     }
+    if config.policy.log_std_init is not None:
+        network["log_std_init"] = config.policy.log_std_init
     network |= {size: getattr(config.learner, size) for size in SIZES.get(config.algorithm, ())}
     return network if config.policy.net_arch is None else network | {"net_arch": config.policy.net_arch}
 

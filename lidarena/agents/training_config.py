@@ -68,6 +68,12 @@ class PolicyConfig(ConfigModel):
             ``{pi: […], qf: […]}`` for SAC and TQC; Stable-Baselines3's default if left out.
         activation: Between the layers; in a training file that leaves it out, ``tanh`` for PPO and its kin and ``relu``
             for the others, as in the libraries.
+        first_action: That the untrained network of PPO and its kin mostly takes, e³ times as often as any other: the
+            number of a discrete action, or one for each of several; say that of a sound rule, where trying all others
+            as often costs too much. Left out: all are as likely.
+        log_std_init: Logarithm of the standard deviation with which continuous actions are drawn at first; left out
+            Stable-Baselines3's. Deviations hardly shrink in a training: one that is used without them should not have
+            learned to live on them.
     """
 
     model_config = ConfigDict(validate_by_name=True, validate_by_alias=True)
@@ -75,6 +81,8 @@ class PolicyConfig(ConfigModel):
     class_name: PolicyClass | Literal["auto"] = Field(default="auto", alias="class")
     net_arch: Layers | dict[str, Layers] | None = None
     activation: Activation = "tanh"
+    first_action: int | list[int] | None = None
+    log_std_init: float | None = Field(default=None, ge=-10, le=10)
 
 
 class TrainingConfig(ConfigModel):
