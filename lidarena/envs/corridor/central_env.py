@@ -8,12 +8,14 @@ import numpy as np
 from gymnasium.vector.utils import batch_space
 from numpy.typing import NDArray
 
+from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_env import SingleWorld, entry_point
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
 from lidarena.envs.corridor.drawing import draw_world
+from lidarena.envs.corridor.drawn_options import DrawnKeywords, DrawnOptions
+from lidarena.envs.corridor.drawn_teams import DrawnTeam
 from lidarena.envs.corridor.episodes import CorridorEpisodes
-from lidarena.envs.corridor.options import CorridorKeywords, CorridorOptions
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.episodes import Generators, Outcome, Seeds
 from lidarena.envs.infos import Info
@@ -27,22 +29,36 @@ class CentralEpisodes:
         worlds: Number of teams.
         options: Checked keywords.
 
-    Attributes:
-        teams: The same episodes robot by robot.
+    Raises:
+        ConfigError: A batch whose teams meet plans of their own: maps of different shapes make no array.
     """
 
-    def __init__(self, worlds: int, options: CorridorOptions) -> None:
+    def __init__(self, worlds: int, options: DrawnOptions) -> None:
         self.options, self.worlds, self.envs = options, worlds, worlds
-        self.teams = CorridorEpisodes(worlds, options)
+        if options.plans is not None and worlds > 1:
+            raise ConfigError(
+                "plans is for a single team or for 'lidarena/CorridorShared-v0', since maps of different shapes are "
+                f"no batch of {worlds} infos"
+            )
+        self._drawn = None if options.plans is None else DrawnTeam(options)
+        self._together = CorridorEpisodes(worlds, options) if self._drawn is None else self._drawn.teams
         robots, one = options.robots, self.teams.observation_space
         self.single_observation_space: gym.Space[Any] = batch_space(one, robots)
         self.single_action_space: gym.Space[Any] = gym.spaces.Box(-1.0, 1.0, (robots, 2), np.float32)
         if isinstance(self.teams.action_space, gym.spaces.Discrete):
             self.single_action_space = gym.spaces.MultiDiscrete([int(self.teams.action_space.n)] * robots)
 
+    @property
+    def teams(self) -> CorridorEpisodes:
+        """The same episodes robot by robot."""
+        return self._together if self._drawn is None else self._drawn.teams
+
     def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``."""
-        self.teams.reset(worlds, generators)
+        if self._drawn is None:
+            self.teams.reset(worlds, generators)
+        elif list(worlds):
+            self._drawn.begin(generators[0], seeds is not None and seeds[0] is not None)
 
     def step(self, actions: Any) -> Outcome:
         """Act in every world; the rewards of its robots add up."""
@@ -88,11 +104,11 @@ class CentralEpisodes:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""
-        return self.teams.arrays()
+        return (self._drawn or self.teams).arrays()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of other episodes with the same options."""
-        self.teams.load_arrays(saved)
+        (self._drawn or self.teams).load_arrays(saved)
 
 
 class CorridorCentralEnv(SingleWorld):
@@ -143,11 +159,13 @@ class CorridorCentralEnv(SingleWorld):
     ## Arguments
 
     Those of ``corridor_v0`` by the same names, such as ``map``, ``robots``, ``places``, ``action`` and ``lidar``; in
-    full: ``CorridorOptions``. Only the limit of steps goes by Gymnasium's name:
+    full: ``DrawnOptions``. The limit of steps goes by Gymnasium's name, and plans may be drawn:
 
     | Name | Type | Default | Meaning |
     |------|------|---------|---------|
     | `max_episode_steps` | int | `1000` | truncates; -1 never |
+    | `plans` | plan, generator, list | `None` | in place of `map`: another one after a reset with a seed |
+    | `episodes_per_plan` | int | `4` | and after so many episodes |
 
     ## References
 
@@ -163,14 +181,14 @@ class CorridorCentralEnv(SingleWorld):
     metadata: dict[str, Any] = {"render_modes": ["rgb_array", "human"], "render_fps": 5}  # noqa: RUF012
     family = "corridor"
 
-    @takes_keywords_of(CorridorOptions)
-    def __init__(self, **keywords: Unpack[CorridorKeywords]) -> None:
-        """Make one world; the keywords are those of ``CorridorOptions``.
+    @takes_keywords_of(DrawnOptions)
+    def __init__(self, **keywords: Unpack[DrawnKeywords]) -> None:
+        """Make one world; the keywords are those of ``DrawnOptions``.
 
         Raises:
             LidarenaError: A keyword, floor plan, start or goal that cannot be had.
         """
-        super().__init__(CentralEpisodes(1, CorridorOptions.checked(keywords)))
+        super().__init__(CentralEpisodes(1, DrawnOptions.checked(keywords)))
 
     @property
     def floorplan(self) -> Floorplan:
@@ -191,18 +209,16 @@ class BatchedCorridor(BatchedWorlds):
     Args:
         num_envs: Number of worlds.
         autoreset_mode: What happens where an episode has ended, see ``BatchedWorlds``.
-        keywords: See ``CorridorOptions``.
+        keywords: See ``DrawnOptions``; without ``plans``.
     """
 
     family = "corridor"
 
-    @takes_keywords_of(CorridorOptions)
-    def __init__(
-        self, num_envs: int = 1, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[CorridorKeywords]
-    ) -> None:
+    @takes_keywords_of(DrawnOptions)
+    def __init__(self, num_envs: int = 1, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[DrawnKeywords]) -> None:
         """Make the worlds; raises like ``CorridorCentralEnv``."""
         worlds = whole_number_of_worlds(num_envs)
-        super().__init__(CentralEpisodes(worlds, CorridorOptions.checked(keywords)), autoreset_mode)
+        super().__init__(CentralEpisodes(worlds, DrawnOptions.checked(keywords)), autoreset_mode)
 
 
 make_single = entry_point(CorridorCentralEnv)

@@ -5,8 +5,8 @@ from typing import Any, ClassVar, Unpack
 from lidarena.base.errors import ConfigError
 from lidarena.base.keyword_checks import takes_keywords_of
 from lidarena.envs.base_vector_env import SAME_STEP, BatchedWorlds, Mode, whole_number_of_worlds
+from lidarena.envs.corridor.drawn_options import DrawnKeywords, DrawnOptions
 from lidarena.envs.corridor.shared_episodes import SharedEpisodes
-from lidarena.envs.corridor.shared_options import SharedKeywords, SharedOptions
 
 
 class SharedCorridor(BatchedWorlds):
@@ -24,20 +24,20 @@ class SharedCorridor(BatchedWorlds):
     Args:
         num_envs: Number of robots, a multiple of ``robots``.
         autoreset_mode: What happens where an episode has ended, see ``BatchedWorlds``.
-        keywords: See ``SharedOptions``.
+        keywords: See ``DrawnOptions``.
     """
 
     metadata: ClassVar[dict[str, Any]] = BatchedWorlds.metadata | {"render_modes": []}  # type: ignore[misc]
     family = "corridor"
 
-    @takes_keywords_of(SharedOptions)
-    def __init__(self, num_envs: int = 4, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[SharedKeywords]) -> None:
+    @takes_keywords_of(DrawnOptions)
+    def __init__(self, num_envs: int = 4, autoreset_mode: Mode = SAME_STEP, **keywords: Unpack[DrawnKeywords]) -> None:
         """Make the worlds.
 
         Raises:
             LidarenaError: As ``CorridorEnv``; or the number of robots does not divide into teams.
         """
-        options, envs = SharedOptions.checked(keywords), whole_number_of_worlds(num_envs)
+        options, envs = DrawnOptions.checked(keywords), whole_number_of_worlds(num_envs)
         if envs % options.robots:
             raise ConfigError(f"num_envs = {num_envs!r} must be a multiple of the {options.robots} robots of a team")
         super().__init__(SharedEpisodes(envs // options.robots, options), autoreset_mode)

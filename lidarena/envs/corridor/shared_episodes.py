@@ -7,14 +7,12 @@ import gymnasium as gym
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.errors import ActionError, TeamError
+from lidarena.base.errors import ActionError
+from lidarena.envs.corridor.drawn_options import DrawnOptions
+from lidarena.envs.corridor.drawn_teams import DrawnTeam
 from lidarena.envs.corridor.episodes import CorridorEpisodes
-from lidarena.envs.corridor.shared_options import SharedOptions
 from lidarena.envs.episodes import Generators, Outcome, Seeds
 from lidarena.envs.infos import Info
-
-_TRIES = 50
-"""So many plans in a row may be too small for the team."""
 
 
 class SharedEpisodes:
@@ -23,19 +21,20 @@ class SharedEpisodes:
     Args:
         worlds: Number of teams.
         options: Checked keywords.
-
-    Attributes:
-        groups: The same episodes team by team: all teams in one, or one a team where each has plans of its own.
     """
 
-    def __init__(self, worlds: int, options: SharedOptions) -> None:
+    def __init__(self, worlds: int, options: DrawnOptions) -> None:
         self.options, self.worlds, self.envs = options, worlds, worlds * options.robots
-        self._apart = options.plans is not None
-        first = CorridorEpisodes(1, options.team_on(0)) if self._apart else CorridorEpisodes(worlds, options)
-        self.groups = [first] * worlds if self._apart else [first]
-        self._plan, self._left = np.full(worlds, -1), np.zeros(worlds, np.int64)
-        self.single_observation_space: gym.Space[Any] = first.observation_space
-        self.single_action_space: gym.Space[Any] = first.action_space
+        apart = options.plans is not None
+        self._drawn = [DrawnTeam(options) for _ in range(worlds)] if apart else []
+        self._together = None if apart else CorridorEpisodes(worlds, options)
+        self.single_observation_space: gym.Space[Any] = self.groups[0].observation_space
+        self.single_action_space: gym.Space[Any] = self.groups[0].action_space
+
+    @property
+    def groups(self) -> list[CorridorEpisodes]:
+        """The same episodes team by team: all teams in one, or one a team where each has plans of its own."""
+        return [drawn.teams for drawn in self._drawn] if self._together is None else [self._together]
 
     def reset(self, worlds: Iterable[int], generators: Generators, seeds: Seeds = None) -> None:
         """Begin a new episode in each of ``worlds``; with a seed, and after some episodes, on another plan.
@@ -43,33 +42,11 @@ class SharedEpisodes:
         Raises:
             TeamError: No plan has room for the team.
         """
-        if not self._apart:
-            self.groups[0].reset(worlds, generators)
+        if self._together is not None:
+            self._together.reset(worlds, generators)
             return
         for world in worlds:
-            if seeds is not None and seeds[world] is not None:
-                self._left[world] = 0
-            self._begin(world, generators[world])
-            self._left[world] -= 1
-
-    def _begin(self, world: int, rng: np.random.Generator) -> None:
-        """Begin an episode, on another plan where it is time for one or the present one turns out to be too small."""
-        for _ in range(_TRIES):
-            try:
-                if self._left[world] == 0:
-                    self._lay_out(world, self.options.draw(rng))
-                    self._left[world] = self.options.episodes_per_plan
-                self.groups[world].reset([0], [rng])
-                return
-            except TeamError as error:
-                self._left[world], refusal = 0, error
-        raise TeamError(
-            f"{_TRIES} plans in a row have no room for {self.options.robots} robots; of the last one: {refusal}"
-        )
-
-    def _lay_out(self, world: int, number: int) -> None:
-        self.groups[world] = CorridorEpisodes(1, self.options.team_on(number))
-        self._plan[world] = number
+            self._drawn[world].begin(generators[world], seeds is not None and seeds[world] is not None)
 
     def step(self, actions: Any) -> Outcome:
         """Act in every world; a team's robots end together, terminated if finished and else truncated.
@@ -80,8 +57,9 @@ class SharedEpisodes:
         given = np.asarray(actions)
         if given.shape[:1] != (self.envs,):
             raise ActionError(f"actions of shape {given.shape} do not lead with the {self.envs} robots of the batch")
-        array = given.reshape(len(self.groups), -1, self.options.robots, *given.shape[1:])
-        outcomes = [self._step_group(group, array[k]) for k, group in enumerate(self.groups)]
+        groups = self.groups
+        array = given.reshape(len(groups), -1, self.options.robots, *given.shape[1:])
+        outcomes = [self._step_group(group, array[k]) for k, group in enumerate(groups)]
         rewards, terminated, truncated = (np.concatenate(part) for part in zip(*outcomes, strict=True))
         return rewards, terminated, truncated
 
@@ -113,22 +91,14 @@ class SharedEpisodes:
 
     def arrays(self) -> dict[str, NDArray[Any]]:
         """Everything that later steps depend on, by name, except the generators."""
-        if not self._apart:
-            return self.groups[0].arrays()
-        parts = [group.arrays() for group in self.groups]
-        stacked = {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
-        return stacked | {"plan": self._plan, "left": self._left}
+        if self._together is not None:
+            return self._together.arrays()
+        parts = [drawn.arrays() for drawn in self._drawn]
+        return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:
         """Continue from the arrays of other episodes with the same options."""
-        if not self._apart:
-            self.groups[0].load_arrays(saved)
-            return
-        self._left[:] = saved["left"]
-        for world, number in enumerate(saved["plan"].tolist()):
-            self._lay_out(world, number)
-            self.groups[world].load_arrays({name: saved[name][world : world + 1] for name in self._teams_own(saved)})
-
-    @staticmethod
-    def _teams_own(saved: dict[str, NDArray[Any]]) -> list[str]:
-        return [name for name in saved if name not in ("plan", "left")]
+        if self._together is not None:
+            self._together.load_arrays(saved)
+        for world, drawn in enumerate(self._drawn):
+            drawn.load_arrays({name: array[world : world + 1] for name, array in saved.items()})

@@ -1,4 +1,4 @@
-"""Keywords of the batch of robots that share a policy, checked at the border."""
+"""Keywords of teams that may meet floor plan after floor plan, checked at the border."""
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
@@ -14,24 +14,26 @@ from lidarena.world.load import MapSpec, generator_of, load_floorplan
 from lidarena.world.plan_generators import draw_plan
 
 FIRST_DRAWN = 2**31
-"""Numbers of the plans that trainings draw begin here, beyond those of any evaluation's seeds."""
+"""Numbers of drawn plans begin here, beyond those that anybody would write in a ``map=``."""
 
 
-class SharedKeywords(CorridorKeywords, total=False):
-    """The keywords of ``SharedOptions`` with their types, for editors and type checkers."""
+class DrawnKeywords(CorridorKeywords, total=False):
+    """The keywords of ``DrawnOptions`` with their types, for editors and type checkers."""
 
     plans: MapSpec | Sequence[MapSpec] | None
     episodes_per_plan: int
 
 
 @dataclass(frozen=True)
-class SharedOptions(CorridorOptions):
-    """Keywords of ``lidarena/CorridorShared-v0``: those of ``CorridorOptions``, and which floor plans teams meet.
+class DrawnOptions(CorridorOptions):
+    """Those of ``CorridorOptions``, and which floor plans a team meets.
+
+    Keywords of ``lidarena/CorridorShared-v0`` and ``lidarena/CorridorCentral-v0``.
 
     Attributes:
         plans: In place of ``map``: a floor plan or a generator such as ``"random:maze"``, or a list of these. Every
-            team draws one of them, and of a generator another plan than anybody's, after every ``episodes_per_plan``
-            episodes, by its own generator. Numbers of drawn plans begin at 2³¹.
+            team draws one of them, and of a generator another plan than anybody's, by its own generator: at a reset
+            with a seed, and after every ``episodes_per_plan`` episodes.
         episodes_per_plan: How many episodes a team stays on a plan: to lay one out takes as long as driving on it for
             some seconds.
     """
@@ -40,7 +42,7 @@ class SharedOptions(CorridorOptions):
     episodes_per_plan: int = 4
 
     @classmethod
-    def checked(cls, keywords: Mapping[str, Any]) -> "SharedOptions":
+    def checked(cls, keywords: Mapping[str, Any]) -> "DrawnOptions":
         """Check keywords and fill in the defaults.
 
         Raises:
