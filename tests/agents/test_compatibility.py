@@ -46,7 +46,7 @@ from tests.agents.test_loading import ARENA
         (
             "corridor",
             lambda: corridor_v0.parallel_env(),
-            "with neighbours 2, but this environment has neighbours 0; make it with neighbours=2",
+            "with neighbours 4 and guard True, but this environment has neighbours 0 and guard False; make it with",
         ),
         ("arena", lambda: gym.make("CartPole-v1"), "but this environment has observations Box"),
     ],

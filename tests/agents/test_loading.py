@@ -29,8 +29,8 @@ def test_without_an_environment_it_is_the_network() -> None:
         ("combined", lambda: gym.make("lidarena/Env2-v0"), GoalChoiceAgent),
         ("combined", lambda: gym.make("lidarena/Env2-v0", observation="map", action="continuous"), GoalChoiceAgent),
         ("combined", lambda: gym.make("lidarena/GoalChoice-v0", map="env2"), LearnedPolicy),
-        ("corridor", lambda: corridor_v0.parallel_env(neighbours=2), SharedFleetAgent),
-        ("corridor", lambda: gym.make("lidarena/CorridorCentral-v0", neighbours=2), SharedFleetAgent),
+        ("corridor", lambda: corridor_v0.parallel_env(neighbours=4, guard=True), SharedFleetAgent),
+        ("corridor", lambda: gym.make("lidarena/CorridorCentral-v0", neighbours=4, guard=True), SharedFleetAgent),
     ],
 )
 def test_a_ready_policy_acts_whatever_its_kind(name: str, make: Any, kind: type[Any]) -> None:

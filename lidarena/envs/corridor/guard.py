@@ -1,4 +1,4 @@
-"""What keeps robots of a team from driving into what their lidar shows: nobody uses up more than half of the room."""
+"""What keeps robots of a team from driving into what their lidar shows: none uses up more than half of the room."""
 
 import math
 
@@ -20,13 +20,15 @@ def guard_speeds(
     max_range: float,
     radius: float,
     period: float,
+    turn: float,
     commands: NDArray[np.float64],
 ) -> None:
-    """Slow down, in place, whoever would come too near to something in the next period; the arc stays the same.
+    """Slow down, in place, whoever would come too near to something in the next period, and turn it aside.
 
     Of the room between a robot and what a beam meets, less ``MARGIN``, one period may use up half. Two robots that
     drive at each other therefore never meet; whoever drives away from something is not held up, nor is who drives along
-    a wall with some 6 cm of room.
+    a wall with some 6 cm of room. Whoever loses more than half of its speed turns away from what stands in its way, so
+    that nobody stands before a corner for ever, and two that meet pass each other on the same side.
 
     Args:
         scans: (W, R, beams) measured ranges [m]; 0 is nearer than the lidar can measure.
@@ -34,6 +36,7 @@ def guard_speeds(
         max_range: Beams that measure this met nothing [m].
         radius: Of the robots [m].
         period: [s].
+        turn: Rate at which to turn aside [rad/s].
         commands: (W, R, 2) speed [m/s] and turn rate [rad/s], changed.
     """
     for w in range(commands.shape[0]):
@@ -43,7 +46,8 @@ def guard_speeds(
                 continue
             sign = 1.0 if speed > 0.0 else -1.0
             ux, uy = sign * math.cos(half_turn), sign * math.sin(half_turn)
-            room = SLACK * abs(speed) * period
+            wanted = SLACK * abs(speed) * period
+            room, side = wanted, 0.0
             for k in range(scans.shape[2]):
                 measured = scans[w, r, k]
                 if measured >= max_range or measured - radius - MARGIN >= 2.0 * room:
@@ -54,5 +58,9 @@ def guard_speeds(
                 keep = radius + min(0.5 * (gap + MARGIN), gap)  # how near it may come
                 beside = away * away - along * along
                 if along > 0.0 and beside < keep * keep:
-                    room = min(room, max(along - math.sqrt(keep * keep - beside), 0.0))
+                    until = max(along - math.sqrt(keep * keep - beside), 0.0)
+                    if until < room:
+                        room, side = until, directions[1, k] * ux - directions[0, k] * uy
             commands[w, r, 0] = sign * min(abs(speed), room / (SLACK * period))
+            if room < 0.5 * wanted:
+                commands[w, r, 1] = -turn if side >= 0.0 else turn

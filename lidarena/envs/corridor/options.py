@@ -95,7 +95,7 @@ class CorridorOptions:
         lidar: Its lidar, the same with the presets of :data:`lidarena.world.lidars.LIDARS` and the ``LidarSpec`` that
             it stands for.
         neighbours: How many of the nearest robots tell each robot where they are and how they move.
-        guard: Whether robots slow down by themselves before what their lidar shows, see
+        guard: Whether robots slow down and turn aside by themselves before what their lidar shows, see
             :func:`lidarena.envs.corridor.guard.guard_speeds`; they see all around then.
         motion_noise: Factor on the noise of the wheels (see ``corridor_kernels.apply_motion_noise``); 0 = they obey.
         localization_noise: Standard deviation of ``info["pose"]``: metres, and for the heading radians.

@@ -61,7 +61,7 @@ class CorridorEnv(ParallelWorld):
     | 6   | back       | -0.2 | 0    |
 
     With ``guard=True`` a robot slows down by itself: in one period it uses up at most half of the room to whatever its
-    lidar shows (see ``lidarena.envs.corridor.guard``).
+    lidar shows, and where that holds it up it turns aside (see ``lidarena.envs.corridor.guard``).
 
     ## Observation space
 
@@ -132,7 +132,7 @@ class CorridorEnv(ParallelWorld):
     | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: TurtleBot3 Burger |
     | `lidar` | str, dict or spec | `None` | the same with a ``LidarSpec``; None: 36 beams of 3.5 m, 1 cm of noise |
     | `neighbours` | int | `0` | how many of the nearest robots tell where they are and how they move |
-    | `guard` | bool | `False` | robots slow down by themselves before what their lidar shows |
+    | `guard` | bool | `False` | robots slow down and turn aside before what their lidar shows |
     | `motion_noise` | float | `1.0` | factor on the noise of the wheels; 0: they obey |
     | `localization_noise` | float | `0.02` | standard deviation of the poses in the info [m], [rad] |
     | `stall_rate` | float | `0.0` | how often a robot is held up for some 3 s [1/s] |

@@ -170,8 +170,8 @@ class CorridorCore:
         """
         before, period = self.physics.poses.copy(), self.options.decision_period
         if self.options.guard:
-            scans, reach = self.measurements.scans, self.beam.max_range
-            guard_speeds(scans, self.lidar.directions, reach, self.robot.radius, period, commands)
+            scans, reach, turn = self.measurements.scans, self.beam.max_range, 0.5 * self.robot.max_turn_rate
+            guard_speeds(scans, self.lidar.directions, reach, self.robot.radius, period, turn, commands)
         apply_motion_noise(
             commands, period, self._noise, self.options.stall_rate, self.streams, self._speed_bias, self._stalled
         )

@@ -8,7 +8,7 @@ from lidarena.agents.corridor.shared_fleet_agent import SharedFleetAgent
 from lidarena.base.errors import PolicyFileError
 from lidarena.envs import corridor_v0
 
-KEYWORDS = {"places": "random", "neighbours": 2}
+KEYWORDS = {"places": "random", "neighbours": 4, "guard": True}
 
 
 @pytest.fixture(scope="module")
@@ -46,4 +46,4 @@ def test_robots_that_see_something_else_are_refused(learned):
     with pytest.raises(
         PolicyFileError, match=r"lidar.beams 36, but .* has lidar.beams 72; make it with lidar=.'beams': 36"
     ):
-        SharedFleetAgent(corridor_v0.parallel_env(lidar={"beams": 72}, neighbours=2), learned)
+        SharedFleetAgent(corridor_v0.parallel_env(lidar={"beams": 72}, neighbours=4, guard=True), learned)

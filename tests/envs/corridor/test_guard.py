@@ -11,7 +11,7 @@ from lidarena.envs.corridor.guard import MARGIN, SLACK, guard_speeds
 from lidarena.envs.corridor.options import CorridorOptions
 from tests.envs.corridor.corridor_worlds import begin
 
-BEAMS, REACH, RADIUS, PERIOD = 36, 3.5, 0.105, 0.2
+BEAMS, REACH, RADIUS, PERIOD, TURN = 36, 3.5, 0.105, 0.2, 1.0
 ANGLES = np.arange(BEAMS) * 2 * np.pi / BEAMS
 DIRECTIONS = np.stack([np.cos(ANGLES), np.sin(ANGLES)])
 SHARES = np.linspace(0.0, 1.0, 2001)
@@ -19,7 +19,7 @@ SHARES = np.linspace(0.0, 1.0, 2001)
 
 def guarded(scan: NDArray[np.float32], speed: float, rate: float) -> tuple[float, float]:
     commands = np.array([[[speed, rate]]])
-    guard_speeds(scan[None, None], DIRECTIONS, REACH, RADIUS, PERIOD, commands)
+    guard_speeds(scan[None, None], DIRECTIONS, REACH, RADIUS, PERIOD, TURN, commands)
     return float(commands[0, 0, 0]), float(commands[0, 0, 1])
 
 
@@ -44,8 +44,8 @@ def slow_guard(scan: NDArray[np.float32], speed: float, rate: float) -> float:
 def test_it_allows_what_trying_one_speed_after_the_other_allows(seed: int, speed: float, rate: float) -> None:
     rng = np.random.default_rng(seed)
     scan = np.where(rng.random(BEAMS) < 0.7, rng.uniform(RADIUS + 0.01, 1.0, BEAMS), REACH).astype(np.float32)
-    slower, same = guarded(scan, speed, rate)
-    assert same == rate
+    slower, turned = guarded(scan, speed, rate)
+    assert turned == rate or (abs(turned) == TURN and abs(slower) <= 0.5 * abs(speed) + 1e-9)
     assert slower == pytest.approx(slow_guard(scan, speed, rate), abs=abs(speed) / 1000 + 1e-6)
 
 
@@ -60,6 +60,18 @@ def test_who_drives_along_a_wall_or_away_from_it_is_hardly_held_up() -> None:
     assert guarded(beside(0.06), 0.5, 1.0)[0] > 0.35  # to the left
     assert guarded(beside(0.06), 0.5, -1.0)[0] < 0.25
     assert guarded(beside(0.06), -0.5, -1.0)[0] < -0.35  # its way back leads to the left
+
+
+def test_who_is_held_up_turns_away_from_what_is_in_the_way() -> None:
+    def before(number: int) -> NDArray[np.float32]:
+        scan = np.full(BEAMS, REACH, np.float32)
+        scan[number] = RADIUS + 0.05
+        return scan
+
+    assert guarded(before(1), 0.5, 0.0)[1] == -TURN  # it is on the left
+    assert guarded(before(BEAMS - 1), 0.5, 0.0)[1] == TURN
+    assert guarded(before(BEAMS // 2 + 1), -0.5, 0.0)[1] == -TURN  # behind it, on the left of its way back
+    assert guarded(before(9), 0.5, 0.3)[1] == 0.3  # beside it
 
 
 def test_what_is_nearer_than_the_lidar_measures_is_not_driven_at() -> None:
