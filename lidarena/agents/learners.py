@@ -22,7 +22,7 @@ from lidarena.base.errors import ConfigError
 
 _GAUSSIAN: tuple[Algorithm, ...] = ("PPO", "RecurrentPPO")
 """Those whose continuous actions have deviations of their own, whatever is observed."""
-_PREFERENCE = 3.0
+_PREFERENCE = 2.0
 """Of an untrained policy for the action that it is to begin with, as a difference of logarithms."""
 _CHOICES = (spaces.Discrete, spaces.MultiDiscrete, spaces.MultiBinary)
 

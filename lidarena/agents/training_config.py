@@ -68,7 +68,7 @@ class PolicyConfig(ConfigModel):
             ``{pi: […], qf: […]}`` for SAC and TQC; Stable-Baselines3's default if left out.
         activation: Between the layers; in a training file that leaves it out, ``tanh`` for PPO and its kin and ``relu``
             for the others, as in the libraries.
-        first_action: That the untrained network of PPO and its kin mostly takes, e³ times as often as any other: the
+        first_action: That the untrained network of PPO and its kin mostly takes, e² times as often as any other: the
             number of a discrete action, or one for each of several; say that of a sound rule, where trying all others
             as often costs too much. Left out: all are as likely.
         log_std_init: Logarithm of the standard deviation with which continuous actions are drawn at first; left out
