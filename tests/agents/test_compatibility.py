@@ -19,14 +19,14 @@ from tests.agents.test_loading import ARENA
         (
             "arena",
             lambda: gym.make("lidarena/Arena-v0", action="discrete"),
-            "'pretrained:arena' was trained for arena environments with observation 'proximity', but this environment "
-            "has observation 'ranges'; make it with observation='proximity'",
+            "'pretrained:arena' was trained for arena environments with observation 'way', but this environment "
+            "has observation 'ranges'; make it with observation='way'",
         ),
         (
             "arena",
             lambda: gym.make("lidarena/Arena-v0"),
-            "with observation 'proximity' and action 'discrete', but this environment has observation 'ranges' and "
-            "action 'continuous'; make it with observation='proximity', action='discrete'",
+            "with observation 'way' and action 'discrete', but this environment has observation 'ranges' and "
+            "action 'continuous'; make it with observation='way', action='discrete'",
         ),
         (
             "low_level",

@@ -14,7 +14,7 @@ from lidarena.base.errors import ConfigError, PolicyFileError
 from lidarena.envs import corridor_v0
 from tests.agents.training_cases import small
 
-ARENA = {"observation": "proximity", "action": "discrete", "knowledge": "lidar"}
+ARENA = {"observation": "way", "action": "discrete", "knowledge": "lidar"}
 
 
 def test_without_an_environment_it_is_the_network() -> None:
@@ -71,7 +71,7 @@ def test_wrappers_are_looked_through() -> None:
 
     env = Own(gym.make("lidarena/Arena-v0", **ARENA))
     assert type(agents.load("pretrained:arena", env)) is LearnedPolicy
-    with pytest.raises(PolicyFileError, match="observation 'proximity'"):
+    with pytest.raises(PolicyFileError, match="observation 'way'"):
         agents.load("pretrained:arena", Own(gym.make("lidarena/Arena-v0", action="discrete")))
 
 

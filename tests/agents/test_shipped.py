@@ -15,7 +15,6 @@ from lidarena.envs.corridor import SHARED_ID
 
 GOAL_CHOICE_ID = "lidarena/GoalChoice-v0"
 RECORDED = {
-    "arena": ("addd9e8083de9143", "9c66f16af133022c"),
     "combined": ("6b7b99a570d28206", "e9840bcd380a9f23"),
     "compass": ("acf8cde9527f8bb7", "206da757d61428b5"),
     "completeness": ("fef08a23b24de84f", "7e693a01d54a9704"),

@@ -42,7 +42,18 @@ class ArenaEnv(SingleWorld):
     | beams + 1, + 2 | cosine and sine of the goal's bearing | -1 | 1 |
 
     ``observation="ranges"`` gives beams over the longest range, ``"proximity"`` the robot's radius over the beam;
-    or an observer of one's own, see ``lidarena.envs.observers``.
+    or an observer of one's own, see ``lidarena.envs.observers``. ``"way"`` is ``"proximity"`` with 19 numbers more, for
+    which the robot keeps a map of what its beams have met since the episode began (unknown is free; what beams have
+    passed since is forgotten) and finds its way through it anew where something has come in between:
+
+    | Num | Observation | Min | Max |
+    |-----|-------------|-----|-----|
+    | beams + 3 | length of the way to the goal over 150 m (to scale), at most 1 | 0 | 1 |
+    | beams + 4, + 5 | cosine and sine of the bearing of a point on the way up to 7 steps ahead | -1 | 1 |
+    | beams + 6 … + 21 | how soon each of 16 headings leads to contact: 0 not in 8 steps, 1 at once | 0 | 1 |
+
+    The headings begin straight ahead, counter-clockwise; what the beams meet is taken to move on as it did from scan to
+    scan, and what the map has stands.
 
     ## Rewards
 
@@ -58,6 +69,7 @@ class ArenaEnv(SingleWorld):
     | time | -1 | 0.1 |
     | clearance | from 0 at two steps' length from the nearest surface to -1 at contact | 0 |
     | turn | -1 for half a turn | 0 |
+    | way | approach to the point that ``"way"`` showed before the step, over the length of a step | 0 |
 
     ## Starting state
 
@@ -75,9 +87,10 @@ class ArenaEnv(SingleWorld):
     ``clearance`` [m], the least distance between the robot and anything on the last step, ``time`` [s], ``collision``,
     ``success``, ``radius`` of the robot [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the
     world: ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min,
-    x_max, y_max [m], and where obstacles move ``moving`` (M, 5) x, y, velocity, radius. With ``expose_truth=True``
-    ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and ``optimal_time`` (BARN's, [s]; infinite
-    elsewhere), for evaluation.
+    x_max, y_max [m], and where obstacles move ``moving`` (M, 5) x, y, velocity, radius. Where the
+    robot keeps a map (``observation="way"``, or a weight of ``way``) ``lookahead_point`` (2,) and ``way_length`` [m].
+    With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and ``optimal_time``
+    (BARN's, [s]; infinite elsewhere), for evaluation.
 
     Gymnasium's own ``SyncVectorEnv`` and ``AsyncVectorEnv`` stack the infos of their worlds, which cannot be done with
     ``circles`` where arenas have different numbers of them: take ``make_vec``'s ``vector_entry_point``, or

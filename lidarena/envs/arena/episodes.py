@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from lidarena.envs.arena.actions import heading_space, turns_of
 from lidarena.envs.arena.kernels import observe
+from lidarena.envs.arena.known_way import EXTRAS, observe_way
 from lidarena.envs.arena.options import OBSERVATIONS, ArenaOptions
 from lidarena.envs.arena.rendering import ArenaRecorder, draw_arena
 from lidarena.envs.arena.rewards import REWARDS, weigh_terms
@@ -39,10 +40,15 @@ class ArenaEpisodes(OneAgentEpisodes):
         self.core = ArenaCore(worlds, options)
         reward = choose_reward(options.reward, REWARDS)
         super().__init__(worlds, self.core.options, reward, heading_space(options.action))
-        low = np.concatenate([np.zeros(self.core.beam.beams + 1), np.full(2, -1.0)]).astype(np.float32)
-        self._choose_observation(OBSERVATIONS, lambda _: gym.spaces.Box(low, np.ones_like(low), dtype=np.float32))
+        self._choose_observation(OBSERVATIONS, self._space)
         self.recorder = ArenaRecorder(worlds) if options.render_mode is not None else None
         self._success = np.zeros(worlds, np.bool_)
+
+    def _space(self, name: str) -> gym.Space[Any]:
+        low = np.zeros(self.core.beam.beams + 3 + (EXTRAS if name == "way" else 0), np.float32)
+        signed = self.core.beam.beams + np.array([1, 2, 4, 5])  # cosines and sines of bearings
+        low[signed[signed < len(low)]] = -1.0
+        return gym.spaces.Box(low, np.ones_like(low), dtype=np.float32)
 
     def _begin(self, world: int, rng: np.random.Generator, seed: int | None) -> None:
         self.core.reset_world(world, rng, seed)
@@ -72,10 +78,22 @@ class ArenaEpisodes(OneAgentEpisodes):
 
     def _look(self) -> NDArray[np.float32]:
         core = self.core
-        out = np.empty((core.worlds, core.beam.beams + 3), np.float32)
-        proximity = self.options.observation == "proximity"
-        far = _FAR * core.side
-        observe(core.physics.poses, core.goals, core.beam.max_range, far, core.radii, proximity, core.measurements, out)
+        extras = EXTRAS if self.options.observation == "way" else 0
+        out = np.empty((core.worlds, core.beam.beams + 3 + extras), np.float32)
+        proximity = self.options.observation in ("proximity", "way")
+        far, basic = _FAR * core.side, core.beam.beams + 3
+        observe(
+            core.physics.poses,
+            core.goals,
+            core.beam.max_range,
+            far,
+            core.radii,
+            proximity,
+            core.measurements,
+            out[:, :basic],
+        )
+        if extras and core.known is not None:
+            observe_way(core.physics.poses, far, core.known.ways, out)
         return out
 
     def _facts(self) -> Info:
@@ -94,18 +112,31 @@ class ArenaEpisodes(OneAgentEpisodes):
                 "radius": core.radii.copy(),
             }
         )
+        if core.known is not None:
+            info |= {"lookahead_point": core.known.ways.point.copy(), "way_length": core.known.ways.length.copy()}
         known = {"circles": core.circles.copy(), "bounds": core.bounds.copy()}
         if self.options.knowledge == "map":
             info |= known
-        if core.moving.number:
-            moving = np.stack([core.moving.discs(world) for world in range(core.worlds)])
-            known["moving"] = moving
+        told = self.options.knowledge == "map" or self.options.expose_truth
+        if core.moving.number and told:
+            known["moving"] = self._moving()
             if self.options.knowledge == "map":
-                info["moving"] = moving.copy()
+                info["moving"] = self._moving()
         if self.options.expose_truth:
             own = {name: info[name].copy() for name in ("pose", "path_length")}
             info["truth"] = known | own | {"optimal_time": core.optimal_time.copy()}
         return info
+
+    def _moving(self) -> NDArray[Any]:
+        """Moving obstacles (worlds, M, 5), or where their number differs an array of arrays (worlds,)."""
+        core = self.core
+        discs = [core.moving.discs(world) for world in range(core.worlds)]
+        least, most = self.options.moving.numbers
+        if least == most:
+            return np.stack(discs)
+        rows = np.empty(core.worlds, object)
+        rows[:] = discs
+        return rows
 
     def picture(self, world: int) -> NDArray[np.uint8] | None:
         """The arena of one world, its potential, plan and path; None unless the worlds are drawn."""

@@ -116,6 +116,7 @@ def sense(
     scanner: Scanner,
     streams: NDArray[np.uint64],
     discs: NDArray[np.float64],
+    disc_counts: NDArray[np.int64],
     disc_radius: float,
     measurements: Measurements,
 ) -> None:
@@ -131,14 +132,17 @@ def sense(
         scanner: The lidars; each world is a plan of its own.
         streams: (W, 4) random streams.
         discs: (W, M, 4) moving obstacles: x, y [m], velocity.
+        disc_counts: (W,) how many of them there are.
         disc_radius: Of them [m].
         measurements: Output.
     """
     lidar, geometry, directions = scanner.lidar, scanner.geometry, scanner.directions
     cast_beams(first, last, poses, scanner.plan, 0.0, NO_OUTLINE, geometry, directions, lidar, measurements.ranges)
     for w in range(first, last):
-        if discs.shape[1]:
-            see_discs(poses[w, 0], discs[w], disc_radius, directions, lidar, measurements.ranges[w, 0])
+        if disc_counts[w]:
+            see_discs(
+                poses[w, 0], discs[w, : disc_counts[w]], disc_radius, directions, lidar, measurements.ranges[w, 0]
+            )
         if scan_is_due(w, period, lidar, measurements.since_scan):
             add_range_noise(w, w + 1, lidar, streams, measurements.ranges, measurements.scans)
         dx, dy = poses[w, 0, 0] - before[w, 0, 0], poses[w, 0, 1] - before[w, 0, 1]

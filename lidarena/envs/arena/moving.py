@@ -5,7 +5,7 @@ the robot. Everything is drawn by the episode's own generator, so that an episod
 """
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
 from typing import Any, NamedTuple
 
@@ -32,7 +32,7 @@ class MovingSpec:
     """The keyword ``moving`` of an arena.
 
     Attributes:
-        number: Of obstacles.
+        number: Of obstacles; or (least, greatest), of which every episode draws one.
         speed: One for all, or (least, greatest) to draw from [m/s].
         radius: Of each; None: 0.3 m in a 10 m room, and to scale [m].
         kind: ``"straight"`` drives on until something is in the way, and turns back; ``"crossing"`` goes to and fro
@@ -40,7 +40,7 @@ class MovingSpec:
             ``"people"`` does so too, but makes room for others and for the robot; ``"mixed"`` draws a kind for each.
     """
 
-    number: int = 0
+    number: int | tuple[int, int] = 0
     speed: float | tuple[float, float] = 0.5
     radius: float | None = None
     kind: str = "straight"
@@ -62,20 +62,17 @@ class MovingSpec:
             raise ConfigError(f"moving = {value!r} must be a number of obstacles, or a mapping of number, speed, kind")
         check_names("moving obstacles", value, [field.name for field in fields(cls)])
         given = dict(value)
-        check_range("moving.number", given.get("number", 0), 0, _MOST, whole=True)
-        speed = given.get("speed", cls.speed)
-        if isinstance(speed, str | bytes) or not (np.isscalar(speed) or len(speed) == 2):
-            raise ConfigError(f"moving.speed = {speed!r} must be a number, or the least and the greatest [m/s]")
-        for one in np.atleast_1d(np.asarray(speed)).tolist():
-            check_range("moving.speed", one, 0.0, 100.0)
-        if not np.isscalar(speed):
-            given["speed"] = (float(speed[0]), float(speed[1]))
-            if given["speed"][0] > given["speed"][1]:
-                raise ConfigError(f"moving.speed = {speed!r} must be the least and the greatest [m/s], in this order")
+        given["number"] = _one_or_two("moving.number", given.get("number", cls.number), 0, _MOST, whole=True)
+        given["speed"] = _one_or_two("moving.speed", given.get("speed", cls.speed), 0.0, 100.0)
         if given.get("radius") is not None:
             check_range("moving.radius", given["radius"], 0.01, 100.0)
         check_choice("moving.kind", given.get("kind", "straight"), KINDS)
         return cls(**given)
+
+    @property
+    def numbers(self) -> tuple[int, int]:
+        """The least and the greatest number."""
+        return self.number if isinstance(self.number, tuple) else (self.number, self.number)
 
     @property
     def speeds(self) -> tuple[float, float]:
@@ -95,7 +92,7 @@ class MovingSpec:
         """
         between = max(1.0 / lidar.rate, period)
         most = lidar.max_range / between - robot_speed
-        if self.number and self.speeds[1] > most:
+        if self.numbers[1] and self.speeds[1] > most:
             raise ConfigError(
                 f"moving.speed = {self.speed!r} m/s is more than this lidar can see coming: with a scan every "
                 f"{between:g} s, a range of {lidar.max_range:g} m and a robot at {robot_speed:g} m/s at most "
@@ -103,8 +100,27 @@ class MovingSpec:
             )
 
 
+def _one_or_two(name: str, value: Any, low: float, high: float, whole: bool = False) -> Any:
+    """Check a number, or the least and the greatest; returns it, or the two as a tuple.
+
+    Raises:
+        ConfigError: It is neither, or out of range.
+    """
+    if isinstance(value, str | bytes) or not (np.isscalar(value) or (isinstance(value, Sequence) and len(value) == 2)):
+        raise ConfigError(f"{name} = {value!r} must be a number, or the least and the greatest")
+    if np.isscalar(value):
+        check_range(name, value, low, high, whole=whole)
+        return value
+    for one in value:
+        check_range(name, one, low, high, whole=whole)
+    if value[0] > value[1]:
+        raise ConfigError(f"{name} = {value!r} must be the least and the greatest, in this order")
+    kind = int if whole else float
+    return kind(value[0]), kind(value[1])
+
+
 class MovingObstacles(NamedTuple):
-    """The moving obstacles of ``W`` worlds, ``M`` each.
+    """The moving obstacles of ``W`` worlds, at most ``M`` each.
 
     Attributes:
         states: (W, M, 4) x, y [m], velocity [m/s].
@@ -113,6 +129,7 @@ class MovingObstacles(NamedTuple):
         kinds: (W, M) int64 index in ``KINDS``.
         streams: (W, 4) random streams.
         radius: () of all [m].
+        counts: (W,) how many there are; the rest of a row means nothing.
     """
 
     states: NDArray[np.float64]
@@ -121,22 +138,24 @@ class MovingObstacles(NamedTuple):
     kinds: NDArray[np.int64]
     streams: NDArray[np.uint64]
     radius: NDArray[np.float64]
+    counts: NDArray[np.int64]
 
     @property
     def number(self) -> int:
-        """Obstacles in a world."""
+        """The most obstacles in a world."""
         return int(self.states.shape[1])
 
     def discs(self, world: int) -> NDArray[np.float64]:
-        """x, y, velocity [m/s] and radius of one world's (M, 5)."""
-        radii = np.full((self.number, 1), float(self.radius[0]))
-        return np.concatenate([self.states[world], radii], axis=1)
+        """x, y, velocity [m/s] and radius of one world's (n, 5)."""
+        count = int(self.counts[world])
+        radii = np.full((count, 1), float(self.radius[0]))
+        return np.concatenate([self.states[world, :count], radii], axis=1)
 
 
 def moving_obstacles(worlds: int, spec: MovingSpec, scale: float) -> MovingObstacles:
     """Room for the obstacles of a batch of worlds in rooms of 100 m times ``scale``."""
     radius = 3.0 * scale if spec.radius is None else spec.radius
-    shape = (worlds, spec.number)
+    shape = (worlds, spec.numbers[1])
     return MovingObstacles(
         np.zeros((*shape, 4)),
         np.zeros((*shape, 2)),
@@ -144,6 +163,7 @@ def moving_obstacles(worlds: int, spec: MovingSpec, scale: float) -> MovingObsta
         np.zeros(shape, np.int64),
         np.zeros((worlds, 4), np.uint64),
         np.array([radius]),
+        np.full(worlds, spec.numbers[0]),
     )
 
 
@@ -201,7 +221,7 @@ def place_moving(
         moving: Output.
     """
     stream, radius = moving.streams[world], moving.radius[0]
-    for k in range(moving.states.shape[1]):
+    for k in range(moving.counts[world]):
         state, kind = moving.states[world, k], moving.kinds[world, k]
         speed = _between(stream, low, high)
         moving.speeds[world, k] = speed
@@ -238,10 +258,11 @@ def _walk(obstacle: int, world: int, robot: NDArray[np.float64], robot_radius: f
     speed = moving.speeds[world, obstacle]
     _aim(obstacle, world, speed, moving)
     vx, vy = states[obstacle, 2], states[obstacle, 3]
-    for other in range(states.shape[0] + 1):
+    count = moving.counts[world]
+    for other in range(count + 1):
         if other == obstacle:
             continue
-        at_robot = other == states.shape[0]
+        at_robot = other == count
         x, y = (robot[0], robot[1]) if at_robot else (states[other, 0], states[other, 1])
         reach = radius + (robot_radius if at_robot else radius)
         dx, dy = states[obstacle, 0] - x, states[obstacle, 1] - y
@@ -274,7 +295,7 @@ def choose_velocities(  # noqa: C901 - one kind after the other
     """
     radius = moving.radius[0]
     for world in range(moving.states.shape[0]):
-        for k in range(moving.states.shape[1]):
+        for k in range(moving.counts[world]):
             state, kind, speed = moving.states[world, k], moving.kinds[world, k], moving.speeds[world, k]
             if kind >= 2:
                 target = moving.targets[world, k]
@@ -341,7 +362,7 @@ def meet_moving(
         near: Changed.
     """
     for world in range(moving.states.shape[0]):
-        for k in range(moving.states.shape[1]):
+        for k in range(moving.counts[world]):
             state = moving.states[world, k]
             x, y = poses[world, 0, 0] - state[0], poses[world, 0, 1] - state[1]
             dx = step * math.cos(poses[world, 0, 2]) - period * state[2]
@@ -357,6 +378,6 @@ def meet_moving(
 def drive_moving(period: float, moving: MovingObstacles) -> None:
     """Move all obstacles for ``period`` seconds."""
     for world in range(moving.states.shape[0]):
-        for k in range(moving.states.shape[1]):
+        for k in range(moving.counts[world]):
             moving.states[world, k, 0] += period * moving.states[world, k, 2]
             moving.states[world, k, 1] += period * moving.states[world, k, 3]

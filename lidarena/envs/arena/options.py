@@ -22,7 +22,7 @@ from lidarena.world.random_arenas import DENSITY
 from lidarena.world.robots import RobotSpec, gives_size, make_robot
 
 ArenaSpec = str | Arena | Floorplan | ArenaGenerator
-OBSERVATIONS = ("ranges", "proximity")
+OBSERVATIONS = ("ranges", "proximity", "way")
 _WEIGHTS = {f"{term}_weight": term for term in REWARDS.names}
 """Keywords of version 0.1, and the terms that they weigh."""
 _EARLIER = {
@@ -108,7 +108,9 @@ class ArenaOptions:
         solvable: Pass over ``"random"`` arenas, and a generator's, in which A* finds no path.
         action: ``"continuous"`` or ``"discrete"`` headings.
         observation: ``"ranges"`` shows the beams over the longest range, ``"proximity"`` the robot's radius over them,
-            which tells near obstacles apart: 1 is contact; or one's own, see ``lidarena.envs.observers``.
+            which tells near obstacles apart: 1 is contact; ``"way"`` adds to that the way through what the lidar has
+            seen since the episode began, and how long each heading stays free; or one's own, see
+            ``lidarena.envs.observers``.
         robot: A preset of :data:`lidarena.world.robots.ROBOTS`, a mapping of changes (to a ``preset``) such as
             ``{"radius": 0.2, "max_speed": 0.3}``, a ``RobotSpec``, or ``"module:callable"`` that makes one. It drives
             at ``max_speed``, 1 m/s by default, and turns on the spot before each step, so turn rate and reverse gear do
@@ -124,7 +126,7 @@ class ArenaOptions:
         reward: ``"default"``, ``{term: weight}``, ``{"preset": "default", term: weight}`` to change some weights of it,
             a function of a ``Step``, or ``"module:function"``; see ``lidarena.envs.rewards``. Terms and their weights
             in ``"default"``: ``progress`` 1, ``success`` 10, ``collision`` 10, ``time`` 0.1, ``clearance`` 0, ``turn``
-            0.
+            0, ``way`` 0; a weight of ``way`` lets the robot keep a map.
         expose_truth: Give ``info["truth"]``, for evaluation.
         field: Whose potential the picture shows, see :data:`lidarena.planning.potential_field.potential_field.PRESETS`.
         render_mode: None or ``"rgb_array"``.
@@ -211,6 +213,12 @@ class ArenaOptions:
                 f"density = {self.density!r} is for 'random' arenas without one of their own only, "
                 f"not for arena = {self.arena!r}"
             )
+
+    @property
+    def keeps_map(self) -> bool:
+        """Whether the robot keeps a map of what it sees, and its way through it."""
+        reward = choose_reward(self.reward, REWARDS)
+        return self.observation == "way" or (reward.function is None and reward.weights.get("way", 0.0) != 0.0)
 
     @property
     def specs(self) -> list[ArenaSpec]:

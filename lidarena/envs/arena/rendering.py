@@ -6,6 +6,7 @@ import cv2
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.envs.arena.known_way import way_ahead
 from lidarena.envs.arena.potential_grid import PotentialGrid, survey
 from lidarena.envs.path_recorder import PathRecorder
 from lidarena.world.canvas import BLUE, GREEN, INK, MAGENTA, ORANGE, RED, WHITE, Canvas, Colour, write
@@ -48,9 +49,18 @@ class ArenaRecorder:
         """Draw a policy's plan, and what it was before it was smoothed, instead of the field's."""
         self._plans[world] = plan.copy(), None if before is None else before.copy()
 
-    def plan(self, world: int, land: PotentialGrid) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
-        """What was shown last, else the plan of the field."""
-        return self._plans[world] or (land.plan.smoothed, land.plan.path)
+    def plan(
+        self, world: int, core: "ArenaCore", land: PotentialGrid
+    ) -> tuple[NDArray[np.float64], NDArray[np.float64] | None]:
+        """What was shown last, else the way that the robot is shown, else, if obstacles are told, the field's plan."""
+        shown = self._plans[world]
+        if shown is not None:
+            return shown
+        if core.known is not None:
+            return np.vstack([core.physics.poses[world, :, :2], way_ahead(world, core.known)]), None
+        if core.options.knowledge == "lidar":
+            return np.empty((0, 2)), None  # nobody here could have planned it
+        return land.plan.smoothed, land.plan.path
 
     def potential_grid(self, world: int, core: "ArenaCore") -> PotentialGrid:
         """The potential of a world's arena, surveyed when it is first asked for."""
@@ -79,11 +89,12 @@ def draw_arena(core: "ArenaCore", recorder: ArenaRecorder, world: int) -> NDArra
             canvas.dots(np.array([[x, y]]), _OBSTACLE, radius * scale)
     for x, y, _, _, radius in core.moving.discs(world).tolist():
         canvas.dots(np.array([[x, y]]), MAGENTA, radius * scale)
-    plan, before = recorder.plan(world, land)
+    plan, before = recorder.plan(world, core, land)
     if before is not None:
         canvas.line(before, ORANGE, 2)
         _draw_forces(canvas, land, before)
-    canvas.line(plan, BLUE, 2)
+    if len(plan):
+        canvas.line(plan, BLUE, 2)
     canvas.line(recorder.driven.paths(world)[0], GREEN, 3)
     _draw_scan(canvas, core, world)
     _draw_places(canvas, land, np.array(arena.goal))
@@ -161,7 +172,7 @@ def _framed(panel: NDArray[np.uint8], headline: str, field: str) -> NDArray[np.u
     write(image, f"potential of the field '{field}': dark is low, lines of equal potential", 8, 36, INK, 0.4)
     lines: list[list[tuple[str, Colour]]] = [
         [("driven", GREEN), ("lidar hits", RED), ("goal (ring)", RED), ("minimum of the potential (x)", MAGENTA)],
-        [("plan", BLUE), ("before regression search", ORANGE), ("force along that (arrows)", INK)],
+        [("plan, or way shown", BLUE), ("before regression search", ORANGE), ("force along that (arrows)", INK)],
     ]
     for row, words in enumerate(lines):
         column = 8

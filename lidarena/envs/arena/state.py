@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
 from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way_gap
+from lidarena.envs.arena.known_way import Knowledge, Moves, learn, no_ways
 from lidarena.envs.arena.moving import (
     KINDS,
     choose_velocities,
@@ -17,7 +18,10 @@ from lidarena.envs.arena.moving import (
     place_moving,
 )
 from lidarena.envs.arena.options import ArenaOptions, OwnSize
+from lidarena.envs.arena.scan_tracks import no_tracks
 from lidarena.envs.arena.scenarios import Scenario, ScenarioGenerator, vicinity
+from lidarena.envs.arena.seen_map import empty_maps, forget
+from lidarena.planning.grid.known_ways import search_space
 from lidarena.world.floorplan import Floorplan
 from lidarena.world.lidar import Scanner, first_scan
 from lidarena.world.map_geometry import MapGeometry
@@ -45,6 +49,7 @@ class ArenaCore:
         moving: Obstacles that move.
         scenarios: The arena of each world.
         measurements: What is measured of it.
+        known: What the robots have made of their scans; None unless they keep a map, see ``ArenaOptions.keeps_map``.
         step_length: Driven in a decision period [m].
         goal_radius: The goal is reached from this distance on [m].
         side: Side of the room to which everything is to scale [m].
@@ -92,6 +97,10 @@ class ArenaCore:
             np.zeros(worlds),
         )
         self._near = np.zeros(worlds, np.bool_)
+        self.known: Knowledge | None = None
+        if self.options.keeps_map:
+            seen = empty_maps(worlds)
+            self.known = Knowledge(seen, no_tracks(worlds, beams), no_ways(worlds), search_space(seen.cost.shape[1]))
         self._slots(0, 0)
 
     def _slots(self, edges: int, circles: int) -> None:
@@ -146,7 +155,12 @@ class ArenaCore:
         self.turns[world] = 0.0
         self.measurements.path_length[world] = 0.0
         self.measurements.since_scan[world] = first_scan(self.period, self.beam)
+        if self.known is not None:
+            forget(world, self.bounds[world], float(self.radii[world]), self.known.seen)
+            self.known.tracks.discs[world], self.known.ways.count[world] = 0.0, 0
         self._sense(self.physics.poses, world, world + 1)
+        if self.known is not None:
+            self.known.ways.approach[world] = 0.0
         x, y = scenario.arena.start
         self.measurements.gap[world] = way_gap(x, y, x, y, world, self.geometry) - self.radii[world]
 
@@ -154,6 +168,8 @@ class ArenaCore:
         """Draw one world's moving obstacles."""
         spec, moving = self.options.moving, self.moving
         moving.streams[world] = seed_stream(rng)
+        least, most = spec.numbers
+        moving.counts[world] = least if least == most else rng.integers(least, most + 1)
         mixed = spec.kind == "mixed"
         moving.kinds[world] = rng.integers(len(KINDS) - 1, size=moving.number) if mixed else KINDS.index(spec.kind)
         start, keep = self.physics.poses[world, 0, :2], 3.0 * self.step_length
@@ -222,10 +238,26 @@ class ArenaCore:
         gap[self.physics.touched] = 0.0
 
     def _sense(self, before: NDArray[np.float64], first: int, last: int) -> None:
+        waited = self.measurements.since_scan + self.period
         sense(
             first, last, before, self.physics.poses, self.goals, self.period, self._scanner, self.streams,
-            self.moving.states, float(self.moving.radius[0]), self.measurements,
+            self.moving.states, self.moving.counts, float(self.moving.radius[0]), self.measurements,
         )  # fmt: skip
+        if self.known is not None:
+            fresh = waited >= 1.0 / self.beam.rate - 1e-9  # as ``scan_is_due`` has it
+            decisions = max(1.0 / (self.beam.rate * self.period), 1.0)
+            learn(first, last, self._moves(before, fresh, decisions), self.known)
+
+    def _moves(self, before: NDArray[np.float64], fresh: NDArray[np.bool_], decisions: float) -> Moves:
+        return Moves(
+            before, self.physics.poses, self.goals, self.radii, self.measurements.scans, fresh, self.step_length,
+            decisions, self.directions, self.beam,
+        )  # fmt: skip
+
+    @property
+    def approaches(self) -> NDArray[np.float64]:
+        """What each robot came nearer to its lookahead point in the last step (worlds,) [m]; 0 without a map."""
+        return np.zeros(self.worlds) if self.known is None else self.known.ways.approach
 
     @property
     def approach(self) -> float:
@@ -237,6 +269,9 @@ class ArenaCore:
         own = {"poses": self.physics.poses, "drawn": self.drawn, "streams": self.streams, "turns": self.turns}
         if self.moving.number:
             own |= {f"moving.{name}": array for name, array in self.moving._asdict().items()}
+        if self.known is not None:
+            kept = (("map", self.known.seen), ("tracks", self.known.tracks), ("way", self.known.ways))
+            own |= {f"{part}.{name}": array for part, arrays in kept for name, array in arrays._asdict().items()}
         return own | {"touched": self.physics.touched} | self.measurements._asdict()
 
     def load_arrays(self, saved: dict[str, NDArray[Any]]) -> None:

@@ -13,7 +13,7 @@ def begun(worlds: int = 2, **keywords: object) -> ArenaEpisodes:
 
 
 def test_observations_lie_in_their_space() -> None:
-    for observation in ("ranges", "proximity"):
+    for observation in ("ranges", "proximity", "way"):
         made = begun(observation=observation)
         for _ in range(5):
             assert all(made.single_observation_space.contains(row) for row in made.observe())

@@ -131,6 +131,32 @@ def test_the_info_tells_them_where_obstacles_are_known() -> None:
     assert "moving" not in info
 
 
+def test_every_episode_draws_how_many_there_are() -> None:
+    arenas = core(2, arena="random", density=0.1, moving={"number": [0, 5], "kind": "mixed"})
+    counts = set()
+    for seed in range(30):
+        for world in range(2):
+            arenas.reset_world(world, np.random.default_rng(seed), None)
+        counts.add(int(arenas.moving.counts[0]))
+        assert arenas.moving.discs(0).shape == (arenas.moving.counts[0], 5)
+        before = arenas.moving.states.copy()
+        arenas.step(np.zeros(2))
+        beyond = np.arange(5) >= arenas.moving.counts[0]
+        assert np.array_equal(arenas.moving.states[0, beyond], before[0, beyond])  # they are not there
+    assert counts == set(range(6))
+
+
+def test_worlds_with_different_numbers_tell_each_its_own() -> None:
+    envs = gym.make_vec(
+        "lidarena/Arena-v0", 6, vectorization_mode="vector_entry_point", moving={"number": [0, 4]}, knowledge="map"
+    )
+    _, infos = envs.reset(seed=0)
+    shapes = {moving.shape for moving in infos["moving"]}
+    assert len(shapes) > 1 and all(columns == 5 for _, columns in shapes)
+    _, info = gym.make("lidarena/Arena-v0", moving={"number": [3, 3]}).unwrapped.reset(seed=0)
+    assert info["moving"].shape == (3, 5)
+
+
 def test_they_move_among_the_walls_of_a_floor_plan() -> None:
     walls = [(0, 0, 0, 8), (0, 8, 8, 8), (8, 8, 8, 0), (8, 0, 0, 0)]
     plan = Floorplan("hall", np.array(walls, float), np.array([[4.0, 4.0, 1.0]]), (0.0, 0.0, 8.0, 8.0), (1.0, 1.0, 0.0))
@@ -146,6 +172,10 @@ def test_they_move_among_the_walls_of_a_floor_plan() -> None:
         ({"number": -1}, "moving.number = -1"),
         (-3, "moving.number = -3"),
         ({"number": 2.5}, "moving.number"),
+        ({"number": [1, 2, 3]}, "least and the greatest"),
+        ({"number": (5, 2)}, "in this order"),
+        ({"number": "many"}, "moving.number"),
+        ({"number": (0, 1000)}, "moving.number = 1000"),
         ({"number": 3, "speed": -1.0}, "moving.speed"),
         ({"number": 3, "speed": (2.0, 1.0)}, "in this order"),
         ({"number": 3, "speed": "fast"}, "moving.speed"),
