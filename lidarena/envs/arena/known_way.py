@@ -51,7 +51,7 @@ class KnownWays(NamedTuple):
         cells: (W, L) the way, from where it was found to the goal, as row · N + column.
         dear: (W, L) what each of them cost when it was found.
         rest: (W, L) length of the way from each of them to the goal [m].
-        count: (W,) cells of the way.
+        number: (W,) cells of the way.
         at: (W,) number of the cell beside the robot.
         age: (W,) steps since it was found.
         point: (W, 2) the lookahead point: the farthest in a straight line along the way [m].
@@ -64,7 +64,7 @@ class KnownWays(NamedTuple):
     cells: NDArray[np.int32]
     dear: NDArray[np.uint8]
     rest: NDArray[np.float32]
-    count: NDArray[np.int64]
+    number: NDArray[np.int64]
     at: NDArray[np.int64]
     age: NDArray[np.int64]
     point: NDArray[np.float64]
@@ -81,7 +81,9 @@ def no_ways(worlds: int) -> KnownWays:
         np.zeros(shape, np.int32),
         np.zeros(shape, np.uint8),
         np.zeros(shape, np.float32),
-        *(np.zeros(worlds, np.int64) for _ in range(3)),
+        np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.int64),
         np.zeros((worlds, 2)),
         np.zeros(worlds),
         np.zeros(worlds),
@@ -138,14 +140,14 @@ def _find_way(world: int, pose: NDArray[np.float64], goal: NDArray[np.float64], 
             length += cell * (1.0 if apart == 1 or apart == columns else math.sqrt(2.0))
         ways.rest[world, k] = length
         ways.dear[world, k] = seen.cost[world, here // columns, here % columns]
-    ways.count[world], ways.at[world], ways.age[world] = count, 0, 0
+    ways.number[world], ways.at[world], ways.age[world] = count, 0, 0
 
 
 @leaf
 def _is_blocked(world: int, known: Knowledge) -> bool:
     """Whether something has come near the way ahead since it was found."""
     ways, cost = known.ways, known.seen.cost[world]
-    for k in range(ways.at[world], ways.count[world]):
+    for k in range(ways.at[world], ways.number[world]):
         here = ways.cells[world, k]
         dear = cost[here // cost.shape[1], here % cost.shape[1]]
         if dear >= BLOCKED and dear > ways.dear[world, k]:
@@ -166,13 +168,13 @@ def _go_along(world: int, pose: NDArray[np.float64], known: Knowledge) -> bool:
     """Find the cell of the way that is beside the robot; whether it is near enough."""
     ways, seen = known.ways, known.seen
     least, best = math.inf, ways.at[world]
-    for k in range(ways.at[world], min(ways.at[world] + 24, ways.count[world])):
+    for k in range(ways.at[world], min(ways.at[world] + 24, ways.number[world])):
         x, y = _middle(ways.cells[world, k], world, seen)
         away = (x - pose[0]) ** 2 + (y - pose[1]) ** 2
         if away <= least:
             least, best = away, k
     ways.at[world] = best
-    return least < (_AWAY * seen.cell[world]) ** 2
+    return bool(least < (_AWAY * seen.cell[world]) ** 2)
 
 
 @leaf
@@ -181,7 +183,7 @@ def _look_ahead(
 ) -> None:
     """Set the lookahead point: the farthest one along the way to which a straight line is no dearer than the way."""
     ways, seen = known.ways, known.seen
-    first, last = ways.at[world], ways.count[world] - 1
+    first, last = ways.at[world], ways.number[world] - 1
     columns = seen.cost.shape[2]
     ways.point[world, 0], ways.point[world, 1], dear, k = goal[0], goal[1], 1, first
     ways.length[world] = math.sqrt((goal[0] - pose[0]) ** 2 + (goal[1] - pose[1]) ** 2)
@@ -191,7 +193,7 @@ def _look_ahead(
     while k < last and ways.rest[world, first] - ways.rest[world, k] < reach:
         k += 1
         here = ways.cells[world, k]
-        dear = max(dear, np.int64(seen.cost[world, here // columns, here % columns]))
+        dear = max(dear, int(seen.cost[world, here // columns, here % columns]))
         x, y = _middle(here, world, seen)
         if k == last:
             x, y = goal[0], goal[1]
@@ -307,7 +309,7 @@ def learn(first: int, last: int, moves: Moves, known: Knowledge) -> None:
             track(world, pose, scan, moves.step, moves.directions, moves.lidar, known.tracks)
             _map_scan(world, pose, scan, moves.step, moves.lidar, known)
         ways.age[world] += 1
-        lost = ways.count[world] == 0 or ways.age[world] >= _AGE or not _go_along(world, pose, known)
+        lost = ways.number[world] == 0 or ways.age[world] >= _AGE or not _go_along(world, pose, known)
         if lost or _is_blocked(world, known):
             _find_way(world, pose, goal, known)
         _look_ahead(world, pose, goal, _AHEAD * moves.step, known)
@@ -317,7 +319,7 @@ def learn(first: int, last: int, moves: Moves, known: Knowledge) -> None:
 def way_ahead(world: int, known: Knowledge) -> NDArray[np.float64]:
     """The way (n, 2) from a robot's lookahead point on, as far as it is remembered [m]."""
     ways, seen = known.ways, known.seen
-    cells = ways.cells[world, ways.at[world] : ways.count[world]]
+    cells = ways.cells[world, ways.at[world] : ways.number[world]]
     middles = seen.origin[world] + (np.stack([cells % CELLS, cells // CELLS], axis=1) + 0.5) * seen.cell[world]
     beyond = int(np.argmin(np.hypot(*(middles - ways.point[world]).T))) + 1 if len(cells) else 0
     return np.vstack([ways.point[world], middles[beyond:]])

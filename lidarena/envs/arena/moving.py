@@ -106,11 +106,11 @@ def _one_or_two(name: str, value: Any, low: float, high: float, whole: bool = Fa
     Raises:
         ConfigError: It is neither, or out of range.
     """
-    if isinstance(value, str | bytes) or not (np.isscalar(value) or (isinstance(value, Sequence) and len(value) == 2)):
-        raise ConfigError(f"{name} = {value!r} must be a number, or the least and the greatest")
-    if np.isscalar(value):
+    if not isinstance(value, Sequence | np.ndarray):
         check_range(name, value, low, high, whole=whole)
         return value
+    if isinstance(value, str | bytes) or len(value) != 2:
+        raise ConfigError(f"{name} = {value!r} must be a number, or the least and the greatest")
     for one in value:
         check_range(name, one, low, high, whole=whole)
     if value[0] > value[1]:

@@ -56,7 +56,7 @@ def no_tracks(worlds: int, beams: int) -> ScanTracks:
 @inlined
 def _meets(distance: float, lidar: LidarSpec) -> bool:
     """Whether a beam has met something, and says where."""
-    return 0.0 < distance < np.float32(lidar.max_range)
+    return bool(0.0 < distance < np.float32(lidar.max_range))
 
 
 @leaf
@@ -69,7 +69,7 @@ def _are_beside(
     a, b = tracks.ends[world, one], tracks.ends[world, other]
     increment = min(lidar.field_of_view, 2.0 * math.pi) / len(ranges)
     wide = 2.5 * increment * min(ranges[one], ranges[other]) + 0.3 * step
-    return (a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 < wide * wide
+    return bool((a[0] - b[0]) ** 2 + (a[1] - b[1]) ** 2 < wide * wide)
 
 
 @leaf

@@ -157,7 +157,7 @@ class ArenaCore:
         self.measurements.since_scan[world] = first_scan(self.period, self.beam)
         if self.known is not None:
             forget(world, self.bounds[world], float(self.radii[world]), self.known.seen)
-            self.known.tracks.discs[world], self.known.ways.count[world] = 0.0, 0
+            self.known.tracks.discs[world], self.known.ways.number[world] = 0.0, 0
         self._sense(self.physics.poses, world, world + 1)
         if self.known is not None:
             self.known.ways.approach[world] = 0.0
