@@ -72,6 +72,8 @@ def test_a_shipped_agent_drives(name: str) -> None:
         assert info["completeness"] > 0.1
     elif "completion" in info:
         assert info["completion"] > 0.3
+    elif "frame" in info:
+        assert info["frame"] >= 20 * 16  # of 1,600, no step shorter than that on average
     else:
         assert info["distance"] < distance
 
