@@ -7,8 +7,7 @@ import numpy as np
 import pytest
 
 import lidarena  # noqa: F401
-from lidarena.base.errors import ActionError, ConfigError, MapError, TeamError
-from lidarena.envs.corridor.drawn_options import DrawnOptions
+from lidarena.base.errors import ActionError, ConfigError, TeamError
 from lidarena.world.random_plans import random_plans
 
 ROBOTS = 2
@@ -97,36 +96,6 @@ def test_actions_of_another_number_of_robots_are_refused() -> None:
         batch.step(np.zeros((3, 2), np.float32))
 
 
-def test_one_controller_meets_a_plan_for_every_seed() -> None:
-    env = gym.make("lidarena/CorridorCentral-v0", robots=2, plans="random:rooms", places="random")
-    _, info = env.reset(seed=4)
-    _, other = env.reset(seed=5)
-    assert info["map"].shape != other["map"].shape or (info["map"] != other["map"]).any()
-    observation, again = env.reset(seed=4)
-    assert np.array_equal(info["map"], again["map"])
-    world: Any = env.unwrapped
-    saved = world.episodes.arrays()
-    env.reset(seed=5)
-    world.episodes.load_arrays(saved)
-    assert np.array_equal(world.episodes.observe()[0], observation)
-    assert np.array_equal(world.floorplan.bounds, world.episodes.teams.core.plan.bounds)
-
-
 def test_a_batch_of_controllers_cannot_tell_of_maps_of_different_shapes() -> None:
     with pytest.raises(ConfigError, match="plans is for a single team or for 'lidarena/CorridorShared-v0'"):
         gym.make_vec("lidarena/CorridorCentral-v0", 2, "vector_entry_point", robots=2, plans="random:rooms")
-
-
-@pytest.mark.parametrize(
-    ("keywords", "error", "words"),
-    [
-        ({"plans": []}, ConfigError, r"plans = \[\] must be a floor plan"),
-        ({"plans": "office", "map": "office"}, ConfigError, "map and plans are both given"),
-        ({"plans": ["office", "random:mazes"]}, MapError, "did you mean"),
-        ({"plans": "office", "episodes_per_plan": 0}, ConfigError, "episodes_per_plan = 0"),
-        ({"plan": "office"}, ConfigError, "did you mean 'plans'"),
-    ],
-)
-def test_plans_that_there_are_not_are_refused(keywords: dict[str, Any], error: type[Exception], words: str) -> None:
-    with pytest.raises(error, match=words):
-        DrawnOptions.checked(keywords)
