@@ -10,6 +10,7 @@ import pytest
 from lidarena.envs import ArenaEnv, CorridorCentralEnv, ExplorationEnv, SeabedEnv, WorkshopEnv
 from lidarena.envs.arena.options import ArenaOptions
 from lidarena.envs.arena.rewards import REWARDS as ARENA
+from lidarena.envs.corridor.drawn_options import DrawnOptions
 from lidarena.envs.corridor.options import CorridorOptions
 from lidarena.envs.corridor.rewards import REWARDS as CORRIDOR
 from lidarena.envs.corridor_v0 import CorridorEnv
@@ -74,8 +75,8 @@ def test_the_central_environment_tells_where_it_differs_from_corridor_v0() -> No
     assert "``corridor_v0``" in told and "``corridor_v0``" in section(CorridorCentralEnv, "Rewards")
     own = {cells[0].strip("`"): cells[2].strip("`") for cells in rows(CorridorCentralEnv, "Arguments")}
     shared = {cells[0].strip("`") for cells in rows(CorridorEnv, "Arguments")}
-    assert own == {"max_episode_steps": str(CorridorOptions.max_episode_steps)}
-    assert own.keys() == {field.name for field in fields(CorridorOptions)} - shared
+    defaults = {field.name: str(field.default) for field in fields(DrawnOptions)}
+    assert own == {name: default for name, default in defaults.items() if name not in shared}
 
 
 @pytest.mark.parametrize("environment", [ExplorationEnv, ArenaEnv, CorridorCentralEnv, CorridorEnv, WorkshopEnv])
