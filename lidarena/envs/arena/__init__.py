@@ -22,7 +22,7 @@ FAMILY = Family(
     },
     measures="lidarena.evaluation.measures.arena:MEASURES",
     baselines="lidarena.baselines.arena",
-    agent_options=("observation", "action", "lidar.beams", "lidar.field_of_view"),
+    agent_options=("observation", "action", "guard", "lidar.beams", "lidar.field_of_view"),
     keywords_of_0_1="lidarena.envs.arena.options:modern_keywords",
 )
 

@@ -31,6 +31,9 @@ class ArenaEnv(SingleWorld):
     - ``action="continuous"``, ``Box(-1, 1, (1,), float32)``: the turn over π.
     - ``action="discrete"``, ``Discrete(16)``: number k turns by k · 22.5 degrees.
 
+    With ``guard=True`` a heading that leads to contact within a step, as far as the lidar has shown, gives way to the
+    nearest one that stays free (see ``lidarena.envs.arena.guard``).
+
     ## Observation space
 
     ``Box(float32, (beams + 3,))``, in the robot's frame:
@@ -87,8 +90,8 @@ class ArenaEnv(SingleWorld):
     ``clearance`` [m], the least distance between the robot and anything on the last step, ``time`` [s], ``collision``,
     ``success``, ``radius`` of the robot [m], ``reward_terms``. With ``knowledge="map"``, for planners that know the
     world: ``circles`` (K, 3) x, y, radius, which cover the edges of a floor plan, and ``bounds`` (4,) x_min, y_min,
-    x_max, y_max [m], and where obstacles move ``moving`` (M, 5) x, y, velocity, radius. Where the
-    robot keeps a map (``observation="way"``, or a weight of ``way``) ``lookahead_point`` (2,) and ``way_length`` [m].
+    x_max, y_max [m], and where obstacles move ``moving`` (M, 5) x, y, velocity, radius. Where the robot keeps a map
+    (``observation="way"``, a weight of ``way``, or ``guard``) ``lookahead_point`` (2,) and ``way_length`` [m].
     With ``expose_truth=True`` ``truth``: ``circles``, ``bounds``, ``pose``, ``path_length`` and ``optimal_time``
     (BARN's, [s]; infinite elsewhere), for evaluation.
 
@@ -115,6 +118,7 @@ class ArenaEnv(SingleWorld):
     | `observation` | str or observer | `"ranges"` | what is seen, see above |
     | `robot` | str, dict or spec | `None` | a preset, changes to one, or a ``RobotSpec``; None: the arena's own |
     | `lidar` | str, dict or spec | `None` | the same with a ``LidarSpec``; None: 36 beams of 30 m, to scale |
+    | `guard` | bool | `False` | it turns aside before what its lidar has shown, see above |
     | `knowledge` | str | `"map"` | obstacles in the info; `"lidar"` only what the lidar sees |
     | `decision_period` | float or None | `None` | time between decisions [s]; None: 1 s, to scale |
     | `goal_radius` | float or None | `None` | distance at which the goal is reached [m]; None: 1 m, to scale |

@@ -41,7 +41,7 @@ _LIMITS = Limits(
     },
     ranges={"decision_period": (1e-3, 100.0), "goal_radius": (1e-3, 100.0)},
     whole={"arenas": (1, 10**9)},
-    switches=("expose_truth", "solvable"),
+    switches=("expose_truth", "guard", "solvable"),
 )
 
 
@@ -77,6 +77,7 @@ class ArenaKeywords(CommonKeywords, total=False):
     action: str
     robot: RobotSpec | Mapping[str, Any] | str | None
     lidar: LidarSpec | Mapping[str, Any] | str | None
+    guard: bool
     knowledge: str
     decision_period: float | None
     goal_radius: float | None
@@ -119,6 +120,8 @@ class ArenaOptions:
             own sizes differ of the largest; ``info["radius"]`` has each.
         lidar: The same with the presets of :data:`lidarena.world.lidars.LIDARS` and a ``LidarSpec``; by default 36
             exact beams all around, of 30 m in a 100 m room and to scale in others.
+        guard: Whether the robot takes the nearest heading that stays free, in place of one that leads to contact within
+            a step as far as its lidar has shown, see :func:`lidarena.envs.arena.guard.guard_turns`; it keeps a map.
         knowledge: ``"map"`` gives the obstacles in ``info``, ``"lidar"`` only what the lidar sees.
         decision_period: Time between decisions [s]; None: 1 s in a 100 m room, and to scale in others.
         goal_radius: The goal is reached from this distance on [m]; None: 1 m in a 100 m room, and to scale in others.
@@ -145,6 +148,7 @@ class ArenaOptions:
     observation: ObservationSpec = "ranges"
     robot: RobotSpec = ROBOT
     lidar: LidarSpec = LIDAR
+    guard: bool = False
     knowledge: str = "map"
     decision_period: float | None = None
     goal_radius: float | None = None
@@ -217,8 +221,10 @@ class ArenaOptions:
     @property
     def keeps_map(self) -> bool:
         """Whether the robot keeps a map of what it sees, and its way through it."""
+        if self.guard or self.observation == "way":
+            return True
         reward = choose_reward(self.reward, REWARDS)
-        return self.observation == "way" or (reward.function is None and reward.weights.get("way", 0.0) != 0.0)
+        return reward.function is None and reward.weights.get("way", 0.0) != 0.0
 
     @property
     def specs(self) -> list[ArenaSpec]:

@@ -7,6 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.base.random_streams import seed_stream
+from lidarena.envs.arena.guard import guard_turns
 from lidarena.envs.arena.kernels import Measurements, sense, turn_and_sweep, way_gap
 from lidarena.envs.arena.known_way import Knowledge, Moves, learn, no_ways
 from lidarena.envs.arena.moving import (
@@ -207,9 +208,12 @@ class ArenaCore:
         self.physics.movers[world] = self.moving.discs(world) if self.moving.number else None
 
     def step(self, turns: NDArray[np.float64]) -> None:
-        """Turn every robot by ``turns`` (worlds,) to the left [rad] and drive for one decision period."""
+        """Turn every robot by ``turns`` (worlds,) to the left [rad] unless guarded, and drive for a period."""
         poses, margin = self.physics.poses, _MARGIN * self.generator.scale
         before = poses.copy()
+        if self.options.guard and self.known is not None:
+            turns = turns.copy()
+            guard_turns(self.known.ways.free, turns)
         self.turns = turns
         turn_and_sweep(
             turns, self.step_length, margin, self.geometry, self.radii, poses, self.measurements.gap, self._near
