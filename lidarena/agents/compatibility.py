@@ -47,7 +47,7 @@ def check_options(learned: LearnedPolicy, env: Any, origin: str) -> None:
     pairs = {name: (_value(trained, name), _value(owner.options, name)) for name in names}
     odd = {name: pair for name, pair in pairs.items() if pair[0] not in (None, pair[1])}
     if odd:
-        wanted, found = (" and ".join(f"{name} {pair[side]!r}" for name, pair in odd.items()) for side in (0, 1))
+        wanted, found = (_enumerated([f"{name} {pair[side]!r}" for name, pair in odd.items()]) for side in (0, 1))
         raise PolicyFileError(
             f"{origin} was trained for {family} environments with {wanted}, but this environment has {found}; "
             f"make it with {_keywords({name: pair[0] for name, pair in odd.items()})}"
@@ -128,6 +128,11 @@ def _value(options: Any, name: str) -> Any:
     for part in name.split("."):
         options = options.get(part) if isinstance(options, Mapping) else getattr(options, part, None)
     return options
+
+
+def _enumerated(words: list[str]) -> str:
+    """Such as ``"a, b and c"``."""
+    return " and ".join([", ".join(words[:-1]), words[-1]] if len(words) > 1 else words)
 
 
 def _keywords(values: Mapping[str, Any]) -> str:

@@ -19,14 +19,14 @@ from tests.agents.test_loading import ARENA
         (
             "arena",
             lambda: gym.make("lidarena/Arena-v0", action="discrete"),
-            "'pretrained:arena' was trained for arena environments with observation 'way', but this environment "
-            "has observation 'ranges'; make it with observation='way'",
+            "'pretrained:arena' was trained for arena environments with observation 'way' and guard True, but this "
+            "environment has observation 'ranges' and guard False; make it with observation='way', guard=True",
         ),
         (
             "arena",
             lambda: gym.make("lidarena/Arena-v0"),
-            "with observation 'way' and action 'discrete', but this environment has observation 'ranges' and "
-            "action 'continuous'; make it with observation='way', action='discrete'",
+            "has observation 'ranges', action 'continuous' and guard False; make it with observation='way', "
+            "action='discrete', guard=True",
         ),
         (
             "low_level",

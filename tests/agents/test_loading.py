@@ -14,7 +14,7 @@ from lidarena.base.errors import ConfigError, PolicyFileError
 from lidarena.envs import corridor_v0
 from tests.agents.training_cases import small
 
-ARENA = {"observation": "way", "action": "discrete", "knowledge": "lidar"}
+ARENA = {"observation": "way", "action": "discrete", "guard": True, "knowledge": "lidar"}
 
 
 def test_without_an_environment_it_is_the_network() -> None:

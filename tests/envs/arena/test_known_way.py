@@ -217,7 +217,7 @@ def test_the_picture_shows_the_way_that_was_given_and_no_plan_that_nobody_had() 
 
 
 def test_the_shipped_agent_is_shown_a_way() -> None:
-    env = gym.make("lidarena/Arena-v0", observation="way", action="discrete", knowledge="lidar")
+    env = gym.make("lidarena/Arena-v0", observation="way", action="discrete", guard=True, knowledge="lidar")
     policy = lidarena.agents.load("pretrained:arena", env)
     observation, info = env.reset(seed=0)
     policy.reset(seed=0)
