@@ -7,6 +7,7 @@ import numpy as np
 from lidarena.base.errors import ConfigError, TeamError
 from lidarena.baselines.corridor.robot_interface import Fleet, FleetState
 from lidarena.baselines.corridor.team_driving import Floats, steer_to
+from lidarena.baselines.corridor.wall_fitting import WallTracker
 from lidarena.baselines.registry import register
 from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.planning.team.floor_grid import FloorGrid
@@ -53,6 +54,7 @@ class LifelongFleet:
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; ``seed`` is of the ties."""
         self.fleet.begin()
+        self._tracker = WallTracker(self.fleet)
         self._seed = seed or 0
         self._team: LifelongTeam | None = None
         self.finished, self.message, self.steps = False, "", 0
@@ -60,8 +62,12 @@ class LifelongFleet:
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
         """Return the team's next actions."""
         state = self.fleet.read(info)
-        if self._team is None and not self.finished:
-            self._begin(state, self.fleet.grid(info))
+        begins = self._team is None and not self.finished
+        if begins:
+            self._grid = self.fleet.grid(info)
+        state = self._tracker.look(state, info, self._grid)
+        if begins:
+            self._begin(state, self._grid)
         if self._team is None:
             return self.fleet.actions(np.zeros((self.fleet.robots, 2)), state)
         away = np.hypot(*(state.poses[:, :2] - self._targets).T)
@@ -72,11 +78,11 @@ class LifelongFleet:
             self.fleet.show(TeamSketch(curves, np.empty((0, 2)), (), f"step {self.steps}"))
         commands = np.array([steer_to(pose, target) for pose, target in zip(state.poses, self._targets, strict=True)])
         commands[~state.active] = 0.0
+        self._tracker.drive(commands)
         return self.fleet.actions(commands, state)
 
     def _begin(self, state: FleetState, grid: FloorGrid) -> None:
         """Lay out the graph for discs as large as the robots' places allow."""
-        self._grid = grid
         for spare in _SPARE:
             graph = grid.graph(self.fleet.radius + spare)
             cells = grid.standing(state.poses[:, :2], graph)

@@ -47,6 +47,7 @@ class Fleet:
         radius: Of each [m].
         period: Seconds between two actions.
         action: ``"continuous"`` or ``"discrete"``.
+        lidar: Of each.
         tolerance: Distance from its goal at which a robot has arrived [m].
     """
 
@@ -56,6 +57,7 @@ class Fleet:
         self.robots, self.robot, self.period = options.robots, options.robot, options.decision_period
         self.radius = self.robot.radius
         self.action, self.tolerance = options.action, options.goal_tolerance
+        self.lidar = options.lidar
         self._central = isinstance(self._env, gym.Env)
         self._last: FleetState | None = None
 
@@ -82,6 +84,13 @@ class Fleet:
         active = np.array([agent_name(robot) in self._env.agents for robot in range(self.robots)])
         self._last = FleetState(poses, goals, active, arrived, time)
         return self._last
+
+    def scan(self, robot: int, info: dict[str, Any]) -> NDArray[np.float64] | None:
+        """A robot's newest scan (beams,) [m]; None if nothing was told of it."""
+        own = info if self._central else info.get(agent_name(robot))
+        if own is None:
+            return None
+        return np.asarray(own["scan"][robot] if self._central else own["scan"], np.float64)
 
     def actions(self, commands: NDArray[np.float64], state: FleetState) -> Any:
         """Return the environment's actions for commands (k, 2) of speed [m/s] and turn rate [rad/s]."""

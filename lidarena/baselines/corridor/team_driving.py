@@ -80,10 +80,12 @@ class ClockDriving:
     Args:
         curves: (T, 2) points of each robot, one a step of the plan [m].
         step: How long a step takes [s].
+        narrow: Whether robots turn before they drive, since there is no room for an arc.
     """
 
-    def __init__(self, curves: list[Floats], step: float) -> None:
+    def __init__(self, curves: list[Floats], step: float, narrow: bool = False) -> None:
         self.curves, self.step = curves, step
+        self._turn_first = _TURN_FIRST_WHERE_NARROW if narrow else _TURN_FIRST
 
     def planned(self, robot: int, time: float) -> Floats:
         """Where a robot should be (2,) [m]."""
@@ -97,7 +99,8 @@ class ClockDriving:
     def commands(self, state: FleetState) -> Floats:
         """Commands (k, 2) that take every robot to where it should be a moment later."""
         targets = [self.planned(robot, state.time + _RESPONSE) for robot in range(len(self.curves))]
-        return np.array([steer_to(pose, target) for pose, target in zip(state.poses, targets, strict=True)])
+        pairs = zip(state.poses, targets, strict=True)
+        return np.array([steer_to(pose, target, turn_first=self._turn_first) for pose, target in pairs])
 
     def remaining(self, robot: int, state: FleetState) -> Floats:
         """The points (n, 2) that a robot still has to pass."""

@@ -9,9 +9,11 @@ from numpy.typing import NDArray
 from lidarena.base.errors import ConfigError, TeamError
 from lidarena.baselines.corridor.deviation_model import DeviationModel, shipped_model
 from lidarena.baselines.corridor.robot_interface import Fleet, FleetState
-from lidarena.baselines.corridor.team_driving import ClockDriving
+from lidarena.baselines.corridor.team_driving import ClockDriving, centred
+from lidarena.baselines.corridor.wall_fitting import WallTracker
 from lidarena.baselines.registry import register
 from lidarena.envs.corridor.rendering import TeamSketch
+from lidarena.envs.corridor.starts_and_goals import CELL
 from lidarena.planning.grid.inflation import clearance
 from lidarena.planning.team.floor_grid import FloorGrid
 from lidarena.planning.team.plan import Method, plan_team
@@ -23,6 +25,8 @@ ROOM = 0.2
 """Robots are planned as discs of at least this radius [m]."""
 _KEEPS_UP = 0.4
 """Robots that are slower than this take as much longer for a step of the plan [m/s]."""
+_CAREFUL = 2.5
+"""Cells that are smaller because corridors are narrow take so many times their share of a step's time."""
 _COMFORT, _WALL_COST = 0.5, 1.0
 """Cells nearer to a wall than this [m] cost more, right at the wall so many steps: the blurred P(occ)."""
 
@@ -75,6 +79,7 @@ class PlannedFleet:
     def reset(self, seed: int | None = None) -> None:
         """Begin a new episode; ``seed`` is of the planner's random choices."""
         self.fleet.begin()
+        self._tracker = WallTracker(self.fleet)
         self.seed = 0 if seed is None else seed
         self.finished, self.message = False, ""
         self.radius = self._wanted_radius
@@ -84,7 +89,10 @@ class PlannedFleet:
         """Return the team's next actions."""
         state = self.fleet.read(info)
         if self.plan is None:
-            self.plan = self._plan_or_say_why(state, self.fleet.grid(info))
+            self.grid = self.fleet.grid(info)
+        state = self._tracker.look(state, info, self.grid)
+        if self.plan is None:
+            self.plan = self._plan_or_say_why(state, self.grid)
             self.message = self.plan.message
             pathless = not all(len(path) for path in self.plan.paths)
             self.finished = not self.plan.solved and (self.needs_solution or pathless)
@@ -94,7 +102,9 @@ class PlannedFleet:
                 self.fleet.show(TeamSketch(note=self.message))
         if self.finished:
             return self.fleet.actions(np.zeros((self.fleet.robots, 2)), state)
-        return self.fleet.actions(self.drive(state, info), state)
+        commands = self.drive(state, info)
+        self._tracker.drive(commands)
+        return self.fleet.actions(commands, state)
 
     def _plan_or_say_why(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan, for smaller discs where the team has no room for the wanted ones; without any, the message says so."""
@@ -128,7 +138,9 @@ class PlannedFleet:
     def begin_driving(self) -> None:
         """Take up a new plan."""
         assert self.plan is not None
-        self.driving = ClockDriving([self.grid.points(path) for path in self.plan.paths], self.step)
+        curves, room = centred(self.plan.paths, self.grid, self.fleet.radius)
+        pace = self.step if room is None else self.step * _CAREFUL * self.grid.resolution / CELL
+        self.driving = ClockDriving(curves, pace, narrow=room is not None)
 
     def drive(self, state: FleetState, info: dict[str, Any]) -> NDArray[np.float64]:
         """Commands (k, 2) for now."""
@@ -142,7 +154,7 @@ class PlannedFleet:
         curves = self.driving.curves
         longest = max(len(curve) for curve in curves)
         table = np.stack([np.pad(curve, ((0, longest - len(curve)), (0, 0)), "edge") for curve in curves])
-        ahead = table[:, min(int(state.time / self.step), longest - 1) :]
+        ahead = table[:, min(int(state.time / self.driving.step), longest - 1) :]
         gaps = ahead[:, None] - ahead[None]
         near = np.triu((gaps**2).sum(axis=-1).transpose(2, 0, 1) < (2 * self.radius - 1e-6) ** 2, 1)
         times, one, other = np.nonzero(near)

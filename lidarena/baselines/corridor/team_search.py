@@ -1,7 +1,6 @@
 """Prioritized search in the world: the plan's order is kept, robots that are late or blocked are planned around."""
 
 import math
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,7 +22,6 @@ _DEADLOCK = 8.0  # if nobody has completed a step for so long, nobody will (s)
 _REST = 2.0  # least time between two plans (s)
 _ASIDE = 0.2  # a robot that stops farther than this from its goal is planned around, where it really is (m)
 _MOVED = 0.06  # less is no motion: localisation jitters (m)
-_TRUST = 0.35  # in a pose of localisation against where the last command led
 _SQUEEZE = (1.0, 0.75, 0.55)  # shares of the planning radius, where robots stand too close for the whole
 
 
@@ -81,8 +79,6 @@ class SearchingFleet(PlannedFleet):
         """Begin a new episode; ``seed`` is of the planner's random choices."""
         super().reset(seed)
         self.replans = 0
-        self._track: NDArray[np.float64] | None = None
-        self._commands = np.empty((0, 2))
         self._planned_at = 0.0
         robots = self.fleet.robots
         self._anchor = np.full((robots, 3), np.inf)  # where each robot was when it last moved
@@ -106,8 +102,6 @@ class SearchingFleet(PlannedFleet):
 
     def drive(self, state: FleetState, info: dict[str, Any]) -> NDArray[np.float64]:
         """Commands (k, 2) for now, after a look at who is late."""
-        if self.grid.clearance is not None:
-            state = replace(state, poses=self._tracked(state))
         before = self.ordered.completed.copy()
         self.ordered.note(state)
         if (self.ordered.completed > before).any():
@@ -120,23 +114,7 @@ class SearchingFleet(PlannedFleet):
         if self.fleet.drawn:
             curves = {robot: self.ordered.remaining(robot) for robot in np.flatnonzero(state.active).tolist()}
             self.fleet.show(TeamSketch(curves, np.empty((0, 2)), self.ordered.waits, self._note()))
-        self._commands = commands
         return commands
-
-    def _tracked(self, state: FleetState) -> NDArray[np.float64]:
-        """Poses (k, 3) between where the last commands led and localisation's, whose jitter may fill a corridor."""
-        if self._track is None or not len(self._commands):
-            self._track = state.poses.copy()
-            return self._track
-        speeds, rates = self._commands.T * self.fleet.period
-        led = self._track.copy()
-        led[:, 0] += speeds * np.cos(led[:, 2] + 0.5 * rates)
-        led[:, 1] += speeds * np.sin(led[:, 2] + 0.5 * rates)
-        led[:, 2] += rates
-        off = state.poses - led
-        off[:, 2] = np.angle(np.exp(1j * off[:, 2]))
-        self._track = led + _TRUST * off
-        return self._track
 
     def _note(self) -> str:
         return f"{self.message}  Replanned {self.replans} times." if self.replans else self.message

@@ -12,6 +12,7 @@ from lidarena.world.extent import check_extent
 from lidarena.world.floorplan import Floorplan
 
 _ROUNDING = 1e-4  # clearances are single precision [m]
+_BESIDE = 0.06  # a robot that is said to be in a wall is looked for so far around [m]
 
 
 @dataclass(frozen=True)
@@ -76,12 +77,17 @@ class FloorGrid:
         return grid_graph_of(closed, 8, self.in_cells(radius), walls=0.0)
 
     def standing(self, points: ArrayLike, graph: GridGraph) -> NDArray[np.int64]:
-        """The cells (n, 2) of points, or the nearest ones beside them in which a robot can stand."""
+        """The cells (n, 2) of points, or the nearest ones within 6 cm of these in which a robot can stand.
+
+        Localisation that is a few centimetres off puts a robot into the walls of a narrow corridor.
+        """
         cells = self.cells(points)
         if self.clearance is None:
             return cells
+        around_it = max(math.ceil(_BESIDE / self.resolution), 1)
         for i, point in enumerate(np.asarray(points, np.float64).reshape(-1, 2)):
-            low, high = np.maximum(cells[i] - 1, 0), np.minimum(cells[i] + 2, graph.index.shape)
+            low = np.maximum(cells[i] - around_it, 0)
+            high = np.minimum(cells[i] + around_it + 1, graph.index.shape)
             around = low + np.argwhere(graph.index[low[0] : high[0], low[1] : high[1]] >= 0)
             if graph.place(cells[i]) < 0 and len(around):
                 cells[i] = around[np.argmin(np.hypot(*(self.points(around) - point).T))]
