@@ -55,8 +55,7 @@ class Repair:
     def _neighbourhood(self) -> NDArray[np.int64]:
         rng, team = self._rng, len(self._traffic)
         size = min(int(rng.integers(_SMALLEST, _LARGEST + 1)), team)
-        late = np.flatnonzero(self._traffic.lengths > self._traffic.alone)
-        first = int(late[rng.integers(len(late))])
+        first = self._late_robot()
         if rng.random() < (_AT_RANDOM if team <= _CROWD else _AT_RANDOM_IN_CROWDS):
             others = rng.permutation(team)
         else:
@@ -67,6 +66,15 @@ class Repair:
         others = others[others != first][: size - 1]
         group = np.concatenate([[first], others]).astype(np.int64)
         return rng.permutation(group) if rng.random() < 0.7 else group
+
+    def _late_robot(self) -> int:
+        """A robot that is late; in a crowd, where there is no time to try all of them, rather one that is very late."""
+        delays = self._traffic.lengths - self._traffic.alone
+        late = np.flatnonzero(delays > 0)
+        if len(self._traffic) <= _CROWD:
+            return int(late[self._rng.integers(len(late))])
+        shares = np.cumsum(np.sqrt(delays[late]))
+        return int(late[np.searchsorted(shares, self._rng.random() * shares[-1], side="right")])
 
     def _blocking_agents(self, robot: int) -> NDArray[np.bool_]:
         traffic = self._traffic

@@ -1,6 +1,7 @@
 """Large-neighbourhood repair: whatever it tries, the plan is a plan, and never a worse one."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -66,3 +67,19 @@ def test_patience_and_budget_end_a_repair_that_gains_nothing() -> None:
     assert traffic.cost() >= traffic.alone.sum() + 2  # aside and back
     assert Repair(traffic, np.random.default_rng(2)).run(Budget(math.inf), 5) >= 5
     assert Repair(traffic, np.random.default_rng(3)).run(Budget(math.inf, 3), 50) == 3
+
+
+@pytest.mark.parametrize(("team", "share"), [(40, 0.75), (20, 0.5)])
+def test_in_a_crowd_it_begins_more_often_with_who_is_very_late(team: int, share: float) -> None:
+    alone = np.full(team, 10)
+    delays = np.zeros(team, np.int64)
+    delays[3], delays[7] = 9, 1
+
+    class Team(SimpleNamespace):
+        def __len__(self) -> int:
+            return team
+
+    repair = Repair(Team(lengths=alone + delays, alone=alone), np.random.default_rng(0))  # type: ignore[arg-type]
+    begun = np.array([repair._late_robot() for _ in range(2000)])
+    assert set(begun.tolist()) == {3, 7}
+    assert (begun == 3).mean() == pytest.approx(share, abs=0.05)
