@@ -99,7 +99,8 @@ def draw_arena(core: "ArenaCore", recorder: ArenaRecorder, world: int) -> NDArra
     _draw_scan(canvas, core, world)
     _draw_places(canvas, land, np.array(arena.goal))
     canvas.robot(core.physics.poses[world, 0], float(core.radii[world]), GREEN)
-    return _framed(canvas.image, _headline(core, world, arena.name), core.options.field)
+    moves = bool(core.moving.number and core.moving.counts[world])
+    return _framed(canvas.image, _headline(core, world, arena.name), core.options.field, moves)
 
 
 def _draw_potential(canvas: Canvas, land: PotentialGrid) -> None:
@@ -162,7 +163,7 @@ def _headline(core: "ArenaCore", world: int, name: str) -> str:
     return f"{name}   driven {driven:.1f} m, {left:.1f} m to the goal, clearance {gap:.2f} m{end}"
 
 
-def _framed(panel: NDArray[np.uint8], headline: str, field: str) -> NDArray[np.uint8]:
+def _framed(panel: NDArray[np.uint8], headline: str, field: str, moves: bool) -> NDArray[np.uint8]:
     height, width = panel.shape[:2]
     total = max(width + 16, 640)
     image = np.full((height + _HEADER + _FOOTER, total, 3), 255, np.uint8)
@@ -174,6 +175,8 @@ def _framed(panel: NDArray[np.uint8], headline: str, field: str) -> NDArray[np.u
         [("driven", GREEN), ("lidar hits", RED), ("goal (ring)", RED), ("minimum of the potential (x)", MAGENTA)],
         [("plan, or way shown", BLUE), ("before regression search", ORANGE), ("force along that (arrows)", INK)],
     ]
+    if moves:
+        lines[1].append(("moves (disc)", MAGENTA))
     for row, words in enumerate(lines):
         column = 8
         for text, colour in words:
