@@ -17,6 +17,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from lidarena.baselines.exploration.robot_interface import Robot
+from lidarena.planning.driving.whereabouts import (
+    Whereabouts,
+    empty_whereabouts,
+    find_way_back,
+    has_no_way_back,
+    is_caught,
+    note_whereabouts,
+)
 from lidarena.planning.grid.connected import connected_cells, known_extent
 from lidarena.planning.grid.frontiers import nearest_cell
 from lidarena.planning.grid.grid_search import find_path
@@ -95,6 +103,7 @@ class Driver:
         self._hits: deque[NDArray[np.float64]] = deque(maxlen=max(1, round(_REMEMBERED / self.robot.period)))
         self._reckoned, self._given = np.zeros(3), -1  # where the commands should have taken it, as ``_hits`` see it
         self._scanned, self._scan_sum, self._turning = np.zeros(3), math.nan, -1
+        self._been: Whereabouts | None = None
 
     def stop(self) -> None:
         """Give up the goal."""
@@ -110,14 +119,25 @@ class Driver:
             move(self._reckoned, self.robot.commands.moves[self._given])
             self._given = -1
         total = self.robot.sum_of_beams(self._observation)
-        if total != self._scan_sum:
+        is_new = total != self._scan_sum
+        if is_new:
             self._scan_sum, self._scanned = total, self._reckoned.copy()
             self._hits.append(self.robot.hits(self._observation, self._reckoned, _NEAR_HITS + self._extra))
         else:
             self._hits.append(np.empty((0, 2)))  # a slow lidar's scan of before
+        self._note_whereabouts(is_new)
         self._around = self._nearby()
         self._is_clear = self._follower.is_clear(self.pose, self._around)
         self._follower.points = self._points_around()
+
+    def _note_whereabouts(self, is_new: bool) -> None:
+        """Remember where the robot is and what it sees; nothing without beams."""
+        scan = self.robot.ranges(self._observation)
+        if self._been is None:
+            self._been = empty_whereabouts(1, len(scan))
+        all_around = self.robot.sees_what_is_near(self._observation)
+        plans = len(self._follower.planned) > 0
+        note_whereabouts(0, self._reckoned, scan, is_new, plans, all_around, self._been)
 
     def _points_around(self) -> NDArray[np.float64]:
         """What the robot must keep clear of, (n, 2) in its own frame; see ``driving.survey.points_around``."""
@@ -233,6 +253,39 @@ class Driver:
     def is_cornered(self) -> bool:
         """Whether the robot has no room to turn round where it is; nothing can be said of a goal then."""
         return not self._follower.can_loiter(self.pose, self._around)
+
+    @property
+    def is_caught(self) -> bool:
+        """Whether the robot has stayed near one place for long."""
+        return self._been is not None and bool(is_caught(0, self.robot.period, self._been))
+
+    @property
+    def retreats(self) -> bool:
+        """Whether the robot is on its way back to where it came from."""
+        return self._been is not None and bool(self._been.retreats[0]) and len(self._follower.planned) > 0
+
+    def is_cut_off(self, terrain: Terrain) -> bool:
+        """Whether the newest survey shows no way to where the robot came from."""
+        if self._been is None:
+            return False
+        frame = terrain.around.frame
+        return bool(has_no_way_back(0, self._reckoned, self.pose, terrain.reachable, frame, self._been))
+
+    def retreat(self) -> bool:
+        """Give up the goal and drive back to where the robot came from; whether a way is found."""
+        if self._been is None:
+            return False
+        follower, robot = self._follower, self.robot
+        angles, longest = robot.angles(self._observation), robot.sight
+        found = find_way_back(
+            0, self._reckoned, follower.points, angles, longest, robot.commands, follower.keep, self._been
+        )
+        if not len(found):
+            return False
+        self.stop()
+        follower.follow(found)
+        self._been.retreats[0] = True
+        return True
 
     def action(self) -> Any:
         """Return the next action: the next planned command if beams say that it is safe, else a turn or the way out."""

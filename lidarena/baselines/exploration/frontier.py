@@ -158,6 +158,8 @@ class FrontierPolicy:
         return self.driver.action()
 
     def _is_due(self) -> bool:
+        if self.driver.retreats:
+            return False
         if self._step - self._planned_at >= self._every or self._step == 1:
             return True
         return self.driver.must_plan or (self.driver.arrived and self._blacklist.arrived_at is None)
@@ -178,8 +180,25 @@ class FrontierPolicy:
             self._wanted_at = self._step
             return
         # SLAM may be a scan behind, so that nothing left must stay so for a while
-        waits = out_of_reach and any(next(self._goals(one, terrain), None) is None for one in self.frontiers)
+        waits = out_of_reach and self._are_some_apart(terrain)
         self.finished = self._step - self._wanted_at >= (self._enclosed if waits else self._patience)
+
+    def _are_some_apart(self, terrain: Terrain) -> bool:
+        """Whether there is any frontier to which no way comes near."""
+        return any(next(self._goals(one, terrain), None) is None for one in self.frontiers)
+
+    def _is_enclosed(self, terrain: Terrain) -> bool:
+        """Whether nothing can be reached for a while, and the map shows no way to where the robot came from either."""
+        waited = self._step - self._wanted_at >= self._patience
+        return waited and self._are_some_apart(terrain) and self.driver.is_cut_off(terrain)
+
+    def _goes_back(self, terrain: Terrain) -> bool:
+        """Whether there are frontiers, and the robot drives back to where it came from."""
+        known = _known(terrain)
+        if not self.frontiers or not self._blacklist.may_retreat(known) or not self.driver.retreat():
+            return False
+        self._blacklist.note_retreat(known)
+        return True
 
     def _set_out(self, terrain: Terrain) -> bool:
         """Set out for the best frontier; whether there is still one that is worth it."""
@@ -188,9 +207,13 @@ class FrontierPolicy:
             if self._is_last(size) and self._is_exhausted(terrain):
                 self._ending = FRUITLESS
                 return False
+            if self.driver.is_caught and self._goes_back(terrain):
+                return True
             if self._pursue(self.frontiers, terrain):
                 return True
         self._ending = OUT_OF_REACH if self.frontiers else EXPLORED
+        if self._is_enclosed(terrain) and self._goes_back(terrain):
+            return True
         return self.driver.is_cornered and bool(self.frontiers)
 
     def _pursue(self, frontiers: Sequence[Frontier], terrain: Terrain) -> bool:

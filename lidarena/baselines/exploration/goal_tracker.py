@@ -41,6 +41,8 @@ class GoalBlacklist:
     _from_afar: list[bool] = field(default_factory=list)  # which of ``given_up`` were given up far from them
     _pardons: int = 0
     _pardoned: int = 0
+    _retreats: int = 0
+    _retreated: int = 0
 
     def is_given_up(self, goal: Goal) -> bool:
         """Return whether a goal has been given up."""
@@ -104,3 +106,23 @@ class GoalBlacklist:
         self._from_afar, self._failures = [False] * len(self.given_up), []
         self._pardons, self._pardoned = self._pardons + 1, known
         return True
+
+    def may_retreat(self, known: int) -> bool:
+        """Return whether the robot may still go back to where it came from, see ``driving.goals.may_retreat``.
+
+        Args:
+            known: Cells of the map that are known.
+        """
+        return self._retreats < PARDONS or known > REGROWN * self._retreated
+
+    def note_retreat(self, known: int) -> None:
+        """Note that it goes back, and give up the goal that it pursued.
+
+        Args:
+            known: Cells of the map that are known.
+        """
+        if known > REGROWN * self._retreated:
+            self._retreats = 0
+        self._retreats, self._retreated = self._retreats + 1, known
+        if self.pursued is not None:
+            self._give_up(self.pursued, from_afar=False)

@@ -92,6 +92,14 @@ class Robot:
             return observation
         return {"scan": np.asarray(info["scan"], np.float64) / self._lidar.max_range}
 
+    def ranges(self, observation: Any) -> NDArray[np.float32]:
+        """Return the ranges of the beams that an observation holds, (beams,) [m]."""
+        return (self._beams(observation)[0] * self._lidar.max_range).astype(np.float32)
+
+    def angles(self, observation: Any) -> NDArray[np.float64]:
+        """Return the angles of the beams that an observation holds, (beams,) [rad]."""
+        return np.array(self._beams(observation)[1], np.float64)  # a copy: kernels are compiled for writable ones
+
     def hits(self, observation: Any, pose: NDArray[np.float64], reach: float) -> NDArray[np.float64]:
         """Return where the observed beams hit something, (n, 2) x, y (m).
 

@@ -9,21 +9,54 @@ from lidarena.base.jit import kernel, merged_kernel
 from lidarena.planning.driving.following import (
     can_loiter,
     clear_queue,
+    enqueue,
     has_queue,
     is_path_blocked,
     plan_commands,
     stays_clear,
 )
 from lidarena.planning.driving.state import ARRIVAL, Drive, DriverSettings, Perceptions
-from lidarena.planning.driving.survey import look_around, remember_hits
+from lidarena.planning.driving.survey import look_around, points_around, remember_hits
+from lidarena.planning.driving.whereabouts import find_way_back, has_no_way_back, note_whereabouts
 from lidarena.planning.grid.grid_search import search_grid, trace
 
 
 @kernel
 def sense(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> None:
     """Take in a world's newest map, pose and scan."""
-    remember_hits(w, senses, settings, drive)
+    is_new = remember_hits(w, senses, settings, drive)
+    been, here = drive.been, drive.reckoned[w]
+    note_whereabouts(w, here, senses.scans[w], is_new, has_queue(w, drive), settings.all_around, been)
     look_around(w, senses, settings, drive)
+
+
+@kernel
+def retreat(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
+    """Give up the goal and drive back to where the robot came from; whether a way is found."""
+    points = points_around(w, senses, settings, drive)
+    angles, longest, keep = settings.angles, settings.max_range, settings.keep
+    found = find_way_back(w, drive.reckoned[w], points, angles, longest, settings.commands, keep, drive.been)
+    if len(found) == 0:
+        return False
+    stop(w, drive)
+    enqueue(w, found, 0.0, drive)
+    drive.been.retreats[w] = True
+    return True
+
+
+@merged_kernel
+def retreats(w: int, drive: Drive) -> bool:
+    """Whether the robot is on its way back to where it came from."""
+    return bool(drive.been.retreats[w]) and has_queue(w, drive)
+
+
+@merged_kernel
+def is_cut_off(w: int, senses: Perceptions, drive: Drive) -> bool:
+    """Whether the newest survey shows no way to where the robot came from."""
+    ground = drive.ground
+    rows, columns = ground.extent[w, 2], ground.extent[w, 3]
+    reachable = ground.reachable[w, : rows * columns].reshape(rows, columns)
+    return bool(has_no_way_back(w, drive.reckoned[w], senses.poses[w], reachable, ground.frame[w], drive.been))
 
 
 @merged_kernel

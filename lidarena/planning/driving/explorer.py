@@ -26,8 +26,11 @@ from lidarena.planning.driving.driver import (
     go,
     has_arrived,
     is_cornered,
+    is_cut_off,
     must_plan,
     remaining_way,
+    retreat,
+    retreats,
     sense,
     stop,
 )
@@ -38,6 +41,8 @@ from lidarena.planning.driving.goals import (
     fail,
     give_up,
     is_given_up,
+    may_retreat,
+    note_retreat,
     open_accounts,
     pardon,
     pursue,
@@ -45,6 +50,7 @@ from lidarena.planning.driving.goals import (
 )
 from lidarena.planning.driving.state import Drive, DriverSettings, Perceptions, empty_drive, forget
 from lidarena.planning.driving.survey import survey
+from lidarena.planning.driving.whereabouts import is_caught
 
 DRIVES, CHOOSES, ENDS = 0, 1, 2
 """What an explorer says after a step: it has a command, a choice is due, or nothing is left (and it turns)."""
@@ -204,7 +210,11 @@ def advance(
     if is_known:
         _note_growth(w, log_d, explorers)
         _find_candidates(w, senses, settings, explorers)
-        if _has_choice(w, settings, explorers):
+        has_choice = _has_choice(w, settings, explorers)
+        caught = is_caught(w, settings.period, drive.been) or _is_enclosed(w, has_choice, senses, settings, explorers)
+        if caught and _goes_back(w, senses, driver, explorers):
+            return DRIVES
+        if has_choice:
             return CHOOSES
         if explorers.candidates.found[w] and is_cornered(w, senses, driver, drive):
             explorers.wanted_at[w] = step
@@ -212,6 +222,31 @@ def advance(
     stop(w, drive)
     explorers.finished[w] = is_known and _has_ended(w, settings, explorers)
     return ENDS if explorers.finished[w] else DRIVES
+
+
+@merged_kernel
+def _goes_back(w: int, senses: Perceptions, driver: DriverSettings, explorers: Explorers) -> bool:
+    """Whether there are frontiers, and the robot drives back to where it came from since it gets nowhere from here."""
+    drive, accounts = explorers.drive, explorers.accounts
+    if not explorers.candidates.found[w] or explorers.ending[w] == FRUITLESS:
+        return False
+    known = _count_known(w, drive)
+    if not may_retreat(w, known, accounts) or not retreat(w, senses, driver, drive):
+        return False
+    note_retreat(w, known, accounts)
+    explorers.wanted_at[w] = explorers.step[w]
+    return True
+
+
+@merged_kernel
+def _is_enclosed(
+    w: int, has_choice: bool, senses: Perceptions, settings: ExplorerSettings, explorers: Explorers
+) -> bool:
+    """Whether nothing can be reached for a while, and the map shows no way to where the robot came from either."""
+    if has_choice or explorers.ending[w] != OUT_OF_REACH or not explorers.candidates.apart[w]:
+        return False
+    since = explorers.step[w] - explorers.wanted_at[w]
+    return since >= settings.patience and is_cut_off(w, senses, explorers.drive)
 
 
 @merged_kernel
@@ -232,6 +267,8 @@ def _is_due(
     w: int, senses: Perceptions, driver: DriverSettings, settings: ExplorerSettings, explorers: Explorers
 ) -> bool:
     step, drive = explorers.step[w], explorers.drive
+    if retreats(w, drive):
+        return False
     if step - explorers.planned_at[w] >= settings.every or step == 1 or must_plan(w, senses, driver, drive):
         return True
     return has_arrived(w, senses, drive) and explorers.accounts.arrived_at[w] < 0

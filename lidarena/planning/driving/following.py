@@ -98,7 +98,7 @@ def next_command(w: int, senses: Perceptions, settings: DriverSettings, drive: D
         drive.given[w] = drive.turning[w]
         if drive.turning[w] >= 0:
             return int(drive.turning[w])
-        _enqueue(w, way_out(points, commands, keep), 0.0, drive)
+        enqueue(w, way_out(points, commands, keep), 0.0, drive)
     drive.turning[w] = -1
     if has_queue(w, drive):
         drive.given[w] = drive.queue[w, drive.queue_span[w, 0]]
@@ -109,7 +109,8 @@ def next_command(w: int, senses: Perceptions, settings: DriverSettings, drive: D
 
 
 @merged_kernel
-def _enqueue(w: int, sequence: NDArray[np.int64], kept: float, drive: Drive) -> None:
+def enqueue(w: int, sequence: NDArray[np.int64], kept: float, drive: Drive) -> None:
+    """Plan a sequence (n,) of commands that is meant to keep a clearance [m]."""
     count = min(len(sequence), drive.queue.shape[1])
     drive.queue[w, :count] = sequence[:count]
     drive.queue_span[w, 0], drive.queue_span[w, 1], drive.kept[w] = 0, count, kept
@@ -152,7 +153,7 @@ def _towards(
     found = search_commands(gap, closed, frame, pose, path[index], settings.commands, margins, limits)
     if len(found) == 0 or not is_safe(points, settings.commands, found, settings.keep):
         return False
-    _enqueue(w, found, margin, drive)
+    enqueue(w, found, margin, drive)
     return True
 
 

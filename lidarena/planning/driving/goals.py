@@ -30,6 +30,8 @@ class GoalAccounts(NamedTuple):
         from_afar: (W, goals) bool, for which of these no commands were found from where the robot was, far from them.
         pardons: (W,) how often such goals were pardoned since the map has grown.
         pardoned: (W,) cells known at the last time.
+        retreats: (W,) how often the robot went back to where it came from since the map has grown.
+        retreated: (W,) cells known at the last time.
         failures: (W, goals, 2) for which no commands were found, in turn.
         failure_count: (W,) how many there were.
         arrived_at: (W,) step of the arrival, -1 before it.
@@ -44,6 +46,8 @@ class GoalAccounts(NamedTuple):
     from_afar: NDArray[np.bool_]
     pardons: NDArray[np.int64]
     pardoned: NDArray[np.int64]
+    retreats: NDArray[np.int64]
+    retreated: NDArray[np.int64]
     failures: NDArray[np.float64]
     failure_count: NDArray[np.int64]
     arrived_at: NDArray[np.int64]
@@ -61,6 +65,8 @@ def empty_accounts(worlds: int) -> GoalAccounts:
         np.zeros((worlds, _MOST), np.bool_),
         np.zeros(worlds, np.int64),
         np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.int64),
+        np.zeros(worlds, np.int64),
         np.zeros((worlds, _MOST, 2)),
         np.zeros(worlds, np.int64),
         np.full(worlds, -1, np.int64),
@@ -74,6 +80,7 @@ def open_accounts(accounts: GoalAccounts, world: int) -> None:
     accounts.has_pursued[world] = False
     accounts.given_up_count[world] = accounts.failure_count[world] = accounts.progress_at[world] = 0
     accounts.pardons[world] = accounts.pardoned[world] = 0
+    accounts.retreats[world] = accounts.retreated[world] = 0
     accounts.arrived_at[world], accounts.shortest[world] = -1, np.inf
 
 
@@ -179,3 +186,20 @@ def pardon(w: int, known: int, accounts: GoalAccounts) -> bool:
     accounts.pardons[w] += 1
     accounts.pardoned[w] = known
     return True
+
+
+@merged_kernel
+def may_retreat(w: int, known: int, accounts: GoalAccounts) -> bool:
+    """Whether the robot may still go back to where it came from: ``PARDONS`` times, anew once the map has grown."""
+    return bool(accounts.retreats[w] < PARDONS or known > REGROWN * accounts.retreated[w])
+
+
+@merged_kernel
+def note_retreat(w: int, known: int, accounts: GoalAccounts) -> None:
+    """Note that it goes back, and give up the goal that it pursued."""
+    if known > REGROWN * accounts.retreated[w]:
+        accounts.retreats[w] = 0
+    accounts.retreats[w] += 1
+    accounts.retreated[w] = known
+    if accounts.has_pursued[w]:
+        give_up(w, accounts.pursued[w, 0], accounts.pursued[w, 1], accounts)

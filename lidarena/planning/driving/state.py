@@ -6,6 +6,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.planning.driving.whereabouts import Whereabouts, empty_whereabouts
 from lidarena.planning.grid.steering import Commands
 
 NEARBY, NEAR_HITS, REMEMBERED = 1.2, 0.6, 2.0
@@ -117,6 +118,7 @@ class Drive(NamedTuple):
         queue_span: (W, 2) the first that is to come, and the end.
         kept: (W,) clearance that they were meant to keep [m].
         turning: (W,) the command with which the robot loiters, -1 for none.
+        been: Where the robot has been of late.
     """
 
     reckoned: NDArray[np.float64]
@@ -136,6 +138,7 @@ class Drive(NamedTuple):
     queue_span: NDArray[np.int64]
     kept: NDArray[np.float64]
     turning: NDArray[np.int64]
+    been: Whereabouts
 
 
 def make_settings(
@@ -170,6 +173,7 @@ def empty_drive(worlds: int, rows: int, columns: int, settings: DriverSettings) 
         np.zeros((worlds, 2), np.int64),
         np.full(worlds, np.inf),
         np.full(worlds, -1, np.int64),
+        empty_whereabouts(worlds, beams),
     )
 
 
@@ -196,3 +200,5 @@ def forget(drive: Drive, world: int) -> None:
     drive.path_points[world], drive.queue_span[world] = 0, 0
     drive.kept[world], drive.turning[world] = np.inf, -1
     drive.ground.extent[world] = 0
+    for array in drive.been:
+        array[world] = 0

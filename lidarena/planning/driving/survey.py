@@ -28,8 +28,8 @@ _WEIGHT, _RATE = 5.0, 10.0  # of the inflation, as in Inflation
 
 
 @merged_kernel
-def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> None:
-    """Note where the newest scan of a world hit something nearby, in place of the oldest that is remembered."""
+def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: Drive) -> bool:
+    """Note where the newest scan of a world hit something nearby, in place of the oldest; whether it is a new one."""
     if drive.given[w] >= 0:
         move(drive.reckoned[w], settings.commands.moves[drive.given[w]])
         drive.given[w] = -1
@@ -40,7 +40,7 @@ def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: 
     for k in range(senses.scans.shape[1]):
         total += np.float64(senses.scans[w, k])
     if total == drive.scan_sum[w]:
-        return  # a slow lidar's scan of before
+        return False  # a slow lidar's scan of before
     drive.scan_sum[w], drive.scanned[w] = total, drive.reckoned[w]
     x, y, heading = drive.reckoned[w, 0], drive.reckoned[w, 1], drive.reckoned[w, 2]
     reach, longest = NEAR_HITS + settings.extra, settings.max_range
@@ -52,6 +52,7 @@ def remember_hits(w: int, senses: Perceptions, settings: DriverSettings, drive: 
             drive.hits[w, slot, count, 1] = y + away * math.sin(angle)
             count += 1
     drive.hit_counts[w, slot] = count
+    return True
 
 
 @merged_kernel

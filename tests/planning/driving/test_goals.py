@@ -8,6 +8,8 @@ from lidarena.planning.driving.goals import (
     fail,
     give_up,
     is_given_up,
+    may_retreat,
+    note_retreat,
     open_accounts,
     pardon,
     pursue,
@@ -19,6 +21,7 @@ DEED = st.one_of(
     st.tuples(st.just("pursue"), PLACE, st.just(0.0), st.just(False)),
     st.tuples(st.just("watch"), PLACE, st.floats(0.0, 5.0), st.booleans()),
     st.tuples(st.just("fail"), PLACE, st.just(0.0), st.booleans()),
+    st.tuples(st.just("retreat"), PLACE, st.sampled_from([100.0, 100.5, 105.0]), st.booleans()),
     st.tuples(st.just("pardon"), PLACE, st.sampled_from([100.0, 100.5, 105.0]), st.booleans()),
 )
 
@@ -37,6 +40,10 @@ def test_the_accounts_are_those_of_the_plain_blacklist(
         elif deed == "watch":
             plain.watch(remaining, flag, step)
             watch(1, remaining, flag, step, 12, 4, accounts)
+        elif deed == "retreat":
+            assert plain.may_retreat(int(remaining)) == may_retreat(1, int(remaining), accounts)
+            plain.note_retreat(int(remaining))
+            note_retreat(1, int(remaining), accounts)
         elif deed == "pardon":
             assert plain.pardon(int(remaining)) == pardon(1, int(remaining), accounts)
         else:
@@ -59,3 +66,14 @@ def test_goals_are_pardoned_a_few_times_until_the_map_has_grown() -> None:
         for _ in range(3):
             fail(0, 1.0, 2.0, False, accounts)
         assert not pardon(0, known, accounts)
+
+
+def test_a_robot_goes_back_a_few_times_until_the_map_has_grown() -> None:
+    accounts = empty_accounts(1)
+    open_accounts(accounts, 0)
+    pursue(0, 3.0, 1.0, 0, accounts)
+    for known in (1000, 1020):
+        for _ in range(PARDONS):
+            assert may_retreat(0, known, accounts)
+            note_retreat(0, known, accounts)
+        assert not may_retreat(0, known, accounts) and is_given_up(0, 3.0, 1.0, accounts)
