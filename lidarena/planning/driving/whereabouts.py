@@ -24,7 +24,7 @@ class Whereabouts(NamedTuple):
         places: (W, K, 3) from where scans were made.
         ranges: (W, K, beams) float32 the scans [m].
         made_at: (W, K) at which steps.
-        count: (W,) how many.
+        number: (W,) how many.
         now: (W,) steps since the beginning.
         anchor: (W, 2) where the robot has stayed near [m].
         anchored_at: (W,) since which step.
@@ -34,7 +34,7 @@ class Whereabouts(NamedTuple):
     places: NDArray[np.float64]
     ranges: NDArray[np.float32]
     made_at: NDArray[np.int64]
-    count: NDArray[np.int64]
+    number: NDArray[np.int64]
     now: NDArray[np.int64]
     anchor: NDArray[np.float64]
     anchored_at: NDArray[np.int64]
@@ -78,8 +78,8 @@ def note_whereabouts(
     """
     been.now[w] += 1
     if is_new:
-        been.count[w] = note_view(
-            been.places[w], been.ranges[w], been.made_at[w], been.count[w], here, scan, been.now[w], all_around
+        been.number[w] = note_view(
+            been.places[w], been.ranges[w], been.made_at[w], been.number[w], here, scan, been.now[w], all_around
         )
     away = math.hypot(here[0] - been.anchor[w, 0], here[1] - been.anchor[w, 1])
     has_retreated = been.retreats[w] and not drives_on
@@ -105,7 +105,7 @@ def has_no_way_back(
     been: Whereabouts,
 ) -> bool:
     """Whether the map shows no way to where a robot came from; see ``retrace.is_cut_off``."""
-    left = np.flatnonzero(been.made_at[w, : been.count[w]] < been.anchored_at[w])
+    left = np.flatnonzero(been.made_at[w, : been.number[w]] < been.anchored_at[w])
     return bool(is_cut_off(been.places[w][left], here, pose, reachable, frame, STRAYED))
 
 
@@ -132,7 +132,7 @@ def find_way_back(
         keep: Least distance to what beams have hit [m].
         been: Of all worlds.
     """
-    made_at = been.made_at[w, : been.count[w]]
+    made_at = been.made_at[w, : been.number[w]]
     fresh = np.flatnonzero((been.now[w] - made_at) * commands.period <= FRESH)
     left = made_at[fresh] < been.anchored_at[w]
     if not left.any():

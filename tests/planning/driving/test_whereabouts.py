@@ -62,7 +62,7 @@ def test_who_stays_near_one_place_for_long_is_caught_until_it_has_gone_back() ->
     for k in range(steps):
         assert not is_caught(0, 0.2, been)
         note_whereabouts(0, np.array([0.3 * (k % 2), 0.0, 0.0]), scan, True, False, True, been)
-    assert is_caught(0, 0.2, been) and been.count[0] == 2
+    assert is_caught(0, 0.2, been) and been.number[0] == 2
     been.retreats[0] = True
     note_whereabouts(0, np.array([0.7, 0.0, 0.0]), scan, True, True, True, been)
     assert is_caught(0, 0.2, been) and been.retreats[0]
