@@ -22,6 +22,8 @@ MOST_FRAMES = 1000
 """More are thinned out, every other one."""
 MOST_BEAMS = 90
 """Of a scan; of a denser one every second, third … beam is kept."""
+MOST_POINTS = 200
+"""Of a planned path: that of a field which is stuck has some 100,000, and every frame shows it."""
 _OCCUPIED = 50
 Floats = NDArray[np.float64]
 
@@ -192,11 +194,13 @@ def _particles(env: Any) -> Floats | None:
 
 
 def _planned(policy: Any) -> Floats | None:
-    """The path that a policy is on, (n, 2), where it shows it."""
+    """The path that a policy is on, (n, 2), where it shows it; a long one by some of its points."""
     for one in (policy, getattr(policy, "driver", None), getattr(policy, "_driver", None)):
         path = getattr(one, "path", None)
         if isinstance(path, np.ndarray) and path.ndim == 2 and path.shape[1] == 2 and np.isfinite(path).all():
-            return path.astype(np.float64)
+            every = max(1, -(-len(path) // MOST_POINTS))
+            shown = path[::every] if (len(path) - 1) % every == 0 else np.vstack([path[::every], path[-1:]])
+            return shown.astype(np.float64)
     return None
 
 

@@ -1,6 +1,7 @@
 """Replays: what is kept of an episode, that it stays small, and that it comes back from its file."""
 
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any
 
 import gymnasium as gym
@@ -12,7 +13,7 @@ from lidarena.base.errors import ConfigError
 from lidarena.evaluation.episodes import run_episode
 from lidarena.evaluation.participants import make_env
 from lidarena.evaluation.recording import Recording
-from lidarena.evaluation.replay import MOST_BEAMS, MOST_FRAMES, EpisodeReplay, ReplayRecorder
+from lidarena.evaluation.replay import MOST_BEAMS, MOST_FRAMES, MOST_POINTS, EpisodeReplay, ReplayRecorder, _planned
 from tests.evaluation.fake_world import Driver
 
 CORRIDOR = "tests.evaluation.fake_world:fake/Corridor-v0"
@@ -133,3 +134,14 @@ def test_a_replay_comes_back_from_its_file(tmp_path: Path) -> None:
         EpisodeReplay.read(file)
     with pytest.raises(ConfigError, match="is no replay"):
         EpisodeReplay.read(tmp_path / "nowhere.json.gz")
+
+
+@pytest.mark.parametrize("points", [0, 1, 200, 201, 100_000])
+def test_of_a_long_planned_path_some_points_are_kept_and_its_ends(points: int) -> None:
+    path = np.stack([np.arange(points), np.zeros(points)], axis=1)
+    kept = _planned(SimpleNamespace(path=path))
+    assert kept is not None and len(kept) <= min(points, MOST_POINTS + 1)
+    if points:
+        np.testing.assert_array_equal(kept[[0, -1]], path[[0, -1]])
+    if points <= MOST_POINTS:
+        np.testing.assert_array_equal(kept, path)
