@@ -73,6 +73,7 @@ def find_blocking_agents(
     apart: float,
     choices: NDArray[np.int64],
     blocking: NDArray[np.bool_],
+    way: NDArray[np.int32],
 ) -> None:
     """Mark the robots with which one would conflict if from time ``begin`` on it took a shortest way to its goal.
 
@@ -87,26 +88,35 @@ def find_blocking_agents(
         apart: Sum of two radii [cells].
         choices: (m,) random numbers that choose among equally short ways.
         blocking: (k,) gets True for the robots.
+        way: (m,) scratch for the steps of the shortest way, at least as many as ``ahead`` tells and two more.
     """
-    here, t = np.int64(paths[robot, begin]), begin
-    final = np.int64(0)
-    for other in range(len(lengths)):
-        final = max(final, lengths[other])
-    while ahead[here] > 0 or t < final:
-        following = here
-        turn = choices[t % len(choices)]
+    here, arrival = np.int64(paths[robot, begin]), begin
+    way[0] = here
+    while ahead[here] > 0:
+        turn = choices[arrival % len(choices)]
         for k in range(8):
             there = np.int64(neighbours[here, 1 + (k + turn) % 8])
             if there >= 0 and ahead[there] >> 12 < ahead[here] >> 12:
-                following = there
+                here = there
                 break
-        for other in range(len(lengths)):
-            a = paths[other, min(t, lengths[other])]
-            b = paths[other, min(t + 1, lengths[other])]
-            row, col = float(cells[a, 0] - cells[here, 0]), float(cells[a, 1] - cells[here, 1])
-            rows = float(cells[b, 0] - cells[following, 0]) - row
-            cols = float(cells[b, 1] - cells[following, 1]) - col
-            if other != robot and too_close(row, col, rows, cols, apart):
+        arrival += 1
+        way[arrival - begin] = here
+    final = arrival
+    for other in range(len(lengths)):
+        final = max(final, lengths[other])
+    for other in range(len(lengths)):
+        t = begin
+        while other != robot and t < final:
+            a, mine = paths[other, min(t, lengths[other])], way[min(t, arrival) - begin]
+            row, col = cells[a, 0] - cells[mine, 0], cells[a, 1] - cells[mine, 1]
+            far = int(max(abs(row), abs(col)) - max(apart, 1.0)) // 2  # each comes nearer by a cell a step
+            if far > 0:
+                t += far
+                continue
+            b, next_mine = paths[other, min(t + 1, lengths[other])], way[min(t + 1, arrival) - begin]
+            rows = cells[b, 0] - cells[next_mine, 0] - row
+            cols = cells[b, 1] - cells[next_mine, 1] - col
+            if too_close(float(row), float(col), float(rows), float(cols), apart):
                 blocking[other] = True
-        here = following
-        t += 1
+                break
+            t += 1

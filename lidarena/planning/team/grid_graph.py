@@ -47,15 +47,55 @@ def _neighbours(index: NDArray[np.int32], moves: NDArray[np.int64], connectivity
 
 
 @leaf
-def _flood_steps(
-    neighbours: NDArray[np.int32],
-    connectivity: int,
+def _flood_straight(
+    padded: NDArray[np.int32],
+    at: NDArray[np.int32],
+    stride: int,
     goal: int,
     ahead: NDArray[np.int32],
+    steps: NDArray[np.int32],
     queue: NDArray[np.int32],
     step: int,
 ) -> None:
-    """Breadth-first from ``goal``; a place's predecessors are all final before it is taken from the queue."""
+    """Breadth-first from ``goal`` with 4 neighbours; ``steps`` and ``queue`` are scratch of ``padded``'s length.
+
+    In the grid itself a neighbour is an addition away, and what is looked at fits into the fastest memory.
+    """
+    for cell in range(len(padded)):
+        steps[cell] = 2**30 if padded[cell] >= 0 else -1
+    queue[0] = at[goal]
+    steps[at[goal]] = 0
+    head, tail = 0, 1
+    while head < tail:
+        here = queue[head]
+        head += 1
+        further = steps[here] + 1
+        if steps[here + 1] == 2**30:
+            steps[here + 1] = further
+            queue[tail] = here + 1
+            tail += 1
+        if steps[here - 1] == 2**30:
+            steps[here - 1] = further
+            queue[tail] = here - 1
+            tail += 1
+        if steps[here + stride] == 2**30:
+            steps[here + stride] = further
+            queue[tail] = here + stride
+            tail += 1
+        if steps[here - stride] == 2**30:
+            steps[here - stride] = further
+            queue[tail] = here - stride
+            tail += 1
+    for place in range(len(at)):
+        far = steps[at[place]]
+        ahead[place] = far if far == 2**30 else far * step
+
+
+@leaf
+def _flood_all(
+    neighbours: NDArray[np.int32], goal: int, ahead: NDArray[np.int32], queue: NDArray[np.int32], step: int
+) -> None:
+    """Breadth-first from ``goal`` with 8; a place's predecessors are all final before it is taken from the queue."""
     ahead[:] = 2**30
     ahead[goal] = 0
     queue[0] = goal
@@ -64,7 +104,7 @@ def _flood_steps(
         here = queue[head]
         head += 1
         straight = ahead[here] + step
-        for m in range(1, connectivity + 1):
+        for m in range(1, 9):
             there = neighbours[here, m]
             if there < 0:
                 continue
@@ -167,8 +207,7 @@ class GridGraph:
         """
         if goal in self._ahead:
             return self._ahead[goal]
-        costs = np.empty(len(self), np.int32)
-        self._flood(goal, costs)
+        costs = self._flooded([goal])[0]
         if (len(self._ahead) + 1) * costs.nbytes > _CACHED_BYTES:
             self._ahead.clear()
         self._ahead[goal] = costs
@@ -180,17 +219,20 @@ class GridGraph:
         Args:
             goals: (k,) places.
         """
-        rows = np.empty((len(goals), len(self)), np.int32)
-        for row, goal in zip(rows, goals, strict=True):
-            if rows.nbytes <= _CACHED_BYTES or goal in self._ahead:
-                row[:] = self.ahead(goal)
-            else:
-                self._flood(goal, row)
-        return rows
+        if 4 * len(goals) * len(self) > _CACHED_BYTES:
+            return self._flooded(goals)
+        return np.stack([self.ahead(goal) for goal in goals])
 
-    def _flood(self, goal: int, costs: NDArray[np.int32]) -> None:
-        queue = np.empty(len(self), np.int32)
-        _flood_steps(self.neighbours, np.int64(self.connectivity), np.int64(goal), costs, queue, STEP)
+    def _flooded(self, goals: Sequence[int]) -> NDArray[np.int32]:
+        rows = np.empty((len(goals), len(self)), np.int32)
+        queue, steps = np.empty_like(self.padded), np.empty_like(self.padded)
+        for row, goal in zip(rows, goals, strict=True):
+            if self.connectivity == 4:
+                place = self.padded, self.at, np.int64(self.stride), np.int64(goal)
+                _flood_straight(*place, row, steps, queue, STEP)
+            else:
+                _flood_all(self.neighbours, np.int64(goal), row, queue, STEP)
+        return rows
 
     @property
     def nbytes(self) -> int:

@@ -5,31 +5,48 @@ as it may wait there. So a state is a place in a stretch of time during which no
 time: a robot that has to wait a hundred steps for another costs one state, not a hundred times the whole map.
 """
 
+from typing import NamedTuple
+
 import numpy as np
 from numpy.typing import NDArray
 
-from lidarena.base.jit import leaf
+from lidarena.base.jit import inlined, leaf
 from lidarena.planning.team.open_list import pop, push
 from lidarena.planning.team.route import at_least, free_from
 from lidarena.planning.team.search_arrays import Reservations, SearchMemory, counts_at, entry_of
 
+_NONE = 2**62
+"""A rank behind all others."""
 
-@leaf
+
+@inlined
 def _begin(reserved: Reservations, place: int, t: int) -> int:
     """When the stretch of waiting in ``place`` begins that ``t`` belongs to."""
     begin = min(t, int(reserved.until[place]))
-    while begin > 0 and not counts_at(reserved, place, begin - 1) & 15:
-        begin -= 1
+    while begin > 0:
+        row = reserved.rows[place, (begin - 1) >> 4]
+        if row == 0:  # nobody comes close in this span
+            begin = (begin - 1) & ~15
+        elif reserved.counts[row, (begin - 1) & 15] & 15:
+            break
+        else:
+            begin -= 1
     return begin
 
 
-@leaf
+@inlined
 def _end(reserved: Reservations, place: int, t: int) -> int:
     """The last time that a robot in ``place`` at ``t`` can be there without a move; 2**30 = for ever."""
     final = int(reserved.since[place, 0])
-    for end in range(t, min(int(reserved.until[place]), final)):
-        if counts_at(reserved, place, end) & 15:
+    last, end = min(int(reserved.until[place]), final), t
+    while end < last:
+        row = reserved.rows[place, end >> 4]
+        if row == 0:
+            end = (end | 15) + 1
+        elif reserved.counts[row, end & 15] & 15:
             return end
+        else:
+            end += 1
     return max(final, t)
 
 
@@ -51,60 +68,94 @@ def _trace(nodes: NDArray[np.int64], entry: int, times: int, path: NDArray[np.in
     return length
 
 
-@leaf
-def _offer(memory: SearchMemory, stamp: int, state: int, spent: int, before: int, cost: int, size: int) -> int:
-    """Put a state on the open list unless it was reached as cheaply before; return the list's size."""
-    nodes = memory.nodes
+class _Expansion(NamedTuple):
+    """A state whose moves are offered.
+
+    Attributes:
+        entry: Of the state.
+        place: Its place.
+        begin: When the robot is there at the earliest.
+        leave: When it has to leave at the latest.
+        rest: As ``at_least`` takes it.
+        level: Greatest cost of what is offered now; what costs more is put off.
+        again: Whether some of its moves were put off before, so that what costs less has been offered.
+    """
+
+    entry: int
+    place: int
+    begin: int
+    leave: int
+    rest: int
+    level: int
+    again: bool
+
+
+@inlined
+def _key(cost: int, ahead: int) -> int:
+    """The rank of a state in the open list: by its cost, equal ones by what is still ahead."""
+    return (cost << 31) + ahead
+
+
+@inlined
+def _offer(memory: SearchMemory, state: int, spent: int, before: int, key: int, rest: int, size: int) -> int:
+    """Put a state on the open list unless it was reached as cheaply before; return the list's size.
+
+    As long as the goal is not free yet all states cost the same, and the search makes for the goal whatever the time.
+    Closed states to which there is an earlier way come behind all others then, by time: each of them only once.
+    """
+    nodes, stamp = memory.nodes, memory.limits[2]
     entry = entry_of(nodes, state, stamp)
     if nodes[entry, 1] < stamp:
         memory.limits[4] += 1
     elif nodes[entry, 2] <= spent:
         return size
+    elif nodes[entry, 1] > stamp and key >> 31 == at_least(np.int64(0), rest):
+        key = _key(key >> 31, 2**30 + spent // 4096)
     nodes[entry, 0], nodes[entry, 1], nodes[entry, 2], nodes[entry, 3] = state, stamp, spent, before
-    return push(memory.keys, memory.items, size, (cost << 31) - (spent ^ 4095), entry)
+    return push(memory.keys, memory.items, size, key, entry)
 
 
-@leaf
+@inlined
 def _depart(
-    neighbours: NDArray[np.int32],
-    ahead: NDArray[np.int32],
-    reserved: Reservations,
-    entry: int,
-    m: int,
-    rest: int,
-    stamp: int,
-    memory: SearchMemory,
-    size: int,
+    there: int, ahead: int, m: int, reserved: Reservations, of: _Expansion, memory: SearchMemory, size: int
 ) -> int:
-    """Offer what move ``m`` from the state of ``entry`` leads to: the first departure into each stretch of time there.
+    """Offer what a move leads to: the first departure into each stretch of time there.
+
+    Args:
+        there: Where move ``m`` leads.
+        ahead: Cost of the way from there.
+        m: The move.
+        reserved: Moves that are taken.
+        of: Where from.
+        memory: As ``find_quick_route`` takes it; the state's node gets the least rank of what is put off.
+        size: Of the open list.
 
     Returns:
         The open list's size, -1 when it is full; sets the sign of ``memory.limits[0]`` where the bound was in the way.
     """
-    until, since, limits = reserved.until, reserved.since, memory.limits
+    nodes, limits = memory.nodes, memory.limits
     times = reserved.rows.shape[1] * 16
-    here, spent = memory.nodes[entry, 0] // times, int(memory.nodes[entry, 2])
-    there, t = int(neighbours[here, m]), spent // 4096
-    small = (spent & 4095) + (1 if m > 4 else 0)
+    here, t = of.place, of.begin
+    small = (nodes[of.entry, 2] & 4095) + (1 if m > 4 else 0)
     most = limits[0] if limits[0] >= 0 else ~limits[0]
-    while t < since[here, m]:
+    while t <= of.leave and t < reserved.since[here, m]:
         later = t + 1
-        if t >= until[here] or not counts_at(reserved, here, t) >> 4 * m & 15:
-            cost = at_least(later * 4096 + small + ahead[there], rest)
-            if cost > most:
-                limits[0] = ~most
-                return size
-            if size + 1 >= len(memory.keys) or 4 * limits[4] >= 3 * len(memory.nodes):
-                return -1
-            following = there * times + _begin(reserved, there, later)
-            size = _offer(memory, stamp, following, later * 4096 + small, entry, cost, size)
-            later = max(_end(reserved, there, later), later)
-            if later >= 2**30:
-                return size
-        while t < later and t < since[here, 0] and (t >= until[here] or not counts_at(reserved, here, t) & 15):
-            t += 1
-        if t < later:
+        spent = later * 4096 + small
+        cost = at_least(spent + ahead, of.rest)
+        if cost > most:
+            limits[0] = ~most
             return size
+        if cost > of.level:
+            nodes[of.entry, 4] = min(nodes[of.entry, 4], _key(cost, ahead))
+            return size
+        if t >= reserved.until[here] or not counts_at(reserved, here, t) >> 4 * m & 15:
+            if size + 2 >= len(memory.keys) or 4 * limits[4] >= 3 * len(nodes):
+                return -1
+            if not of.again or cost == of.level:
+                following = there * times + _begin(reserved, there, later)
+                size = _offer(memory, following, spent, of.entry, _key(cost, ahead), of.rest, size)
+            later = max(_end(reserved, there, later), later)
+        t = later
     return size
 
 
@@ -123,7 +174,7 @@ def find_quick_route(
     Arguments and result as ``route.find_route``; a place's state is numbered by when its stretch of time begins. The
     robot leaves its start at ``delay`` at the earliest, unless somebody comes too close there before.
     """
-    nodes, limits, since = memory.nodes, memory.limits, reserved.since
+    nodes, limits = memory.nodes, memory.limits
     times = reserved.rows.shape[1] * 16
     start, goal = ends[0], ends[1]
     stamp = limits[2] + 2
@@ -135,11 +186,13 @@ def find_quick_route(
     cost = at_least(delay * 4096 + ahead[start], rest)
     if cost > limits[0]:
         return -2
-    size = _offer(memory, stamp, start * times, delay * 4096, np.int64(-1), cost, np.int64(0))
+    key = _key(cost, int(ahead[start]))
+    size = _offer(memory, start * times, delay * 4096, np.int64(-1), key, rest, np.int64(0))
     while size > 0:
-        entry = int(memory.items[0])
+        key, entry = memory.keys[0], int(memory.items[0])
         size = pop(memory.keys, memory.items, size)
-        if nodes[entry, 1] > stamp:
+        again = nodes[entry, 1] > stamp
+        if again and nodes[entry, 4] != key:
             continue
         nodes[entry, 1] = stamp + 1
         here = nodes[entry, 0] // times
@@ -148,11 +201,16 @@ def find_quick_route(
         limits[3] += 1
         if limits[3] > limits[1]:
             return -2
-        spent = int(nodes[entry, 2])
+        t = int(nodes[entry, 2]) // 4096
+        of = _Expansion(entry, here, t, _end(reserved, here, t), rest, key >> 31, again)
+        nodes[entry, 4] = _NONE
         for m in range(1, 9):
-            if neighbours[here, m] >= 0 and spent // 4096 < since[here, m]:
-                size = _depart(neighbours, ahead, reserved, entry, m, rest, stamp, memory, size)
+            there = int(neighbours[here, m])
+            if there >= 0:
+                size = _depart(there, int(ahead[there]), m, reserved, of, memory, size)
                 if size < 0:
                     limits[5] = 1  # search_arrays.NO_STATES
                     return -2
+        if nodes[entry, 4] < _NONE:
+            size = push(memory.keys, memory.items, size, nodes[entry, 4], entry)
     return -2 if limits[0] < 0 else -1

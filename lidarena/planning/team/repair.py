@@ -90,5 +90,6 @@ class Repair:
             traffic.graph.apart,
             self._rng.integers(8, size=16),
             blocking,
+            np.empty(traffic.alone[robot] + traffic.capacity + 2, np.int32),
         )
         return blocking

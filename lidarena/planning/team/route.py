@@ -25,10 +25,16 @@ def free_from(reserved: Reservations, goal: int) -> int:
     """The first time from which on nobody comes too close to ``goal``; -1 if somebody rests there."""
     if reserved.since[goal, 0] < 2**30:
         return -1
-    for t in range(reserved.until[goal] - 1, -1, -1):
-        if counts_at(reserved, goal, t) & 15:
-            return t + 1
-    return 0
+    t = int(reserved.until[goal])
+    while t > 0:
+        row = reserved.rows[goal, (t - 1) >> 4]
+        if row == 0:  # nobody comes close in this span
+            t = (t - 1) & ~15
+        elif reserved.counts[row, (t - 1) & 15] & 15:
+            break
+        else:
+            t -= 1
+    return t
 
 
 @inlined

@@ -81,8 +81,8 @@ class SearchMemory(NamedTuple):
         limits: (6,) greatest cost; most states to expand; and, changed by a search, its stamp, the number of states
             that it expanded and of those it met; what there was no room for, see ``NO_STATES`` and ``NO_ROWS``. Where
             the greatest cost cut a search off, it comes back with its bits inverted.
-        nodes: (s, 4) hash table: state (place * times + time), stamp, cost so far, entry of the state before. Entries
-            with an older stamp than the search's are free.
+        nodes: (s, 5) hash table: state (place * times + time), stamp, cost so far, entry of the state before, rank of
+            what was put off. Entries with an older stamp than the search's are free.
         keys: (m,) room for the keys of the open list.
         items: (m,) room for the entries of the open list's states.
     """
@@ -154,7 +154,7 @@ def empty_tables(places: int, times: int) -> TeamTables:
 def _empty_memory(states: int) -> SearchMemory:
     limits = np.array([2**31 - 1, 2**31 - 1, 0, 0, 0, 0], np.int64)
     room = 2 * states
-    return SearchMemory(limits, np.zeros((states, 4), np.int64), np.empty(room, np.int64), np.empty(room, np.int32))
+    return SearchMemory(limits, np.zeros((states, 5), np.int64), np.empty(room, np.int64), np.empty(room, np.int32))
 
 
 def with_more_room(tables: TeamTables) -> TeamTables | None:

@@ -49,7 +49,7 @@ def test_blocking_agents_are_those_whom_the_straight_way_meets(seed: int, begin:
     goal = int(rng.integers(12))
     found = np.zeros(4, np.bool_)
     arrays = (CORRIDOR.cells, CORRIDOR.neighbours, CORRIDOR.ahead(goal), paths, lengths, 0.0)
-    find_blocking_agents(0, begin, *arrays, rng.integers(8, size=16), found)
+    find_blocking_agents(0, begin, *arrays, rng.integers(8, size=16), found, np.empty(16, np.int32))
     here, t, expected = int(paths[0, begin]), begin, {0: False, 1: False, 2: False, 3: False}
     while here != goal or t < lengths.max():
         there = here + int(np.sign(goal - here))
