@@ -12,7 +12,7 @@ from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.conflicts import find_blocking_agents
 from lidarena.planning.team.traffic import Traffic
 
-_SMALLEST, _LARGEST = 2, 6
+_SMALLEST, _LARGEST, _LARGEST_IN_CROWDS = 2, 6, 8
 _DELAYED, _LONGEST_DELAY = 0.1, 8  # share of neighbourhoods whose first robot lets others pass before it leaves
 _AT_RANDOM, _AT_RANDOM_IN_CROWDS, _CROWD = 0.25, 0.05, 32
 """Shares of neighbourhoods that are not built around a late robot, in small teams and in those of more robots than
@@ -54,7 +54,8 @@ class Repair:
 
     def _neighbourhood(self) -> NDArray[np.int64]:
         rng, team = self._rng, len(self._traffic)
-        size = min(int(rng.integers(_SMALLEST, _LARGEST + 1)), team)
+        largest = _LARGEST if team <= _CROWD else _LARGEST_IN_CROWDS
+        size = min(int(rng.integers(_SMALLEST, largest + 1)), team)
         first = self._late_robot()
         if rng.random() < (_AT_RANDOM if team <= _CROWD else _AT_RANDOM_IN_CROWDS):
             others = rng.permutation(team)
@@ -68,12 +69,12 @@ class Repair:
         return rng.permutation(group) if rng.random() < 0.7 else group
 
     def _late_robot(self) -> int:
-        """A robot that is late; in a crowd, where there is no time to try all of them, rather one that is very late."""
+        """A robot that is late; in a crowd, where there is no time to try all of them, the more often the later it is."""
         delays = self._traffic.lengths - self._traffic.alone
         late = np.flatnonzero(delays > 0)
         if len(self._traffic) <= _CROWD:
             return int(late[self._rng.integers(len(late))])
-        shares = np.cumsum(np.sqrt(delays[late]))
+        shares = np.cumsum(delays[late])
         return int(late[np.searchsorted(shares, self._rng.random() * shares[-1], side="right")])
 
     def _blocking_agents(self, robot: int) -> NDArray[np.bool_]:

@@ -69,7 +69,7 @@ def test_patience_and_budget_end_a_repair_that_gains_nothing() -> None:
     assert Repair(traffic, np.random.default_rng(3)).run(Budget(math.inf, 3), 50) == 3
 
 
-@pytest.mark.parametrize(("team", "share"), [(40, 0.75), (20, 0.5)])
+@pytest.mark.parametrize(("team", "share"), [(40, 0.9), (20, 0.5)])
 def test_in_a_crowd_it_begins_more_often_with_who_is_very_late(team: int, share: float) -> None:
     alone = np.full(team, 10)
     delays = np.zeros(team, np.int64)
