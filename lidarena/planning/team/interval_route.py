@@ -117,14 +117,20 @@ def _offer(memory: SearchMemory, state: int, spent: int, before: int, key: int, 
 
 @inlined
 def _depart(
-    there: int, ahead: int, m: int, reserved: Reservations, of: _Expansion, memory: SearchMemory, size: int
+    there: int,
+    m: int,
+    ahead: NDArray[np.int32],
+    reserved: Reservations,
+    of: _Expansion,
+    memory: SearchMemory,
+    size: int,
 ) -> int:
     """Offer what a move leads to: the first departure into each stretch of time there.
 
     Args:
-        there: Where move ``m`` leads.
-        ahead: Cost of the way from there.
+        there: Where it leads.
         m: The move.
+        ahead: (n,) cost of the way from each place.
         reserved: Moves that are taken.
         of: Where from.
         memory: As ``find_quick_route`` takes it; the state's node gets the least rank of what is put off.
@@ -141,26 +147,26 @@ def _depart(
     while t <= of.leave and t < reserved.since[here, m]:
         later = t + 1
         spent = later * 4096 + small
-        cost = at_least(spent + ahead, of.rest)
+        cost = at_least(spent + ahead[there], of.rest)
         if cost > most:
             limits[0] = ~most
             return size
         if cost > of.level:
-            nodes[of.entry, 4] = min(nodes[of.entry, 4], _key(cost, ahead))
+            nodes[of.entry, 4] = min(nodes[of.entry, 4], _key(cost, int(ahead[there])))
             return size
         if t >= reserved.until[here] or not counts_at(reserved, here, t) >> 4 * m & 15:
             if size + 2 >= len(memory.keys) or 4 * limits[4] >= 3 * len(nodes):
                 return -1
             if not of.again or cost == of.level:
                 following = there * times + _begin(reserved, there, later)
-                size = _offer(memory, following, spent, of.entry, _key(cost, ahead), of.rest, size)
+                size = _offer(memory, following, spent, of.entry, _key(cost, int(ahead[there])), of.rest, size)
             later = max(_end(reserved, there, later), later)
         t = later
     return size
 
 
 @leaf
-def find_quick_route(
+def find_quick_route(  # noqa: C901 - the loop of a search
     neighbours: NDArray[np.int32],
     ahead: NDArray[np.int32],
     reserved: Reservations,
@@ -205,12 +211,11 @@ def find_quick_route(
         of = _Expansion(entry, here, t, _end(reserved, here, t), rest, key >> 31, again)
         nodes[entry, 4] = _NONE
         for m in range(1, 9):
-            there = int(neighbours[here, m])
-            if there >= 0:
-                size = _depart(there, int(ahead[there]), m, reserved, of, memory, size)
-                if size < 0:
-                    limits[5] = 1  # search_arrays.NO_STATES
-                    return -2
+            if neighbours[here, m] >= 0 and size >= 0:
+                size = _depart(int(neighbours[here, m]), m, ahead, reserved, of, memory, size)
+        if size < 0:
+            limits[5] = 1  # search_arrays.NO_STATES
+            return -2
         if nodes[entry, 4] < _NONE:
             size = push(memory.keys, memory.items, size, nodes[entry, 4], entry)
     return -2 if limits[0] < 0 else -1

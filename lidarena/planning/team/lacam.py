@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from lidarena.base.jit import kernel, leaf
 from lidarena.planning.team.budget import Budget
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.lacam_joint import (
     EXHAUSTED,
     FOUND,
@@ -228,9 +229,23 @@ class Lacam:
             way.append(at)
             at = int(self._nodes.parent[at])
         paths = np.ascontiguousarray(self._nodes.places[way[::-1]].T)
-        moving = np.pad(paths[:, :-1] != paths[:, 1:], ((0, 0), (1, 0)), constant_values=True)
-        lengths = moving.shape[1] - 1 - np.argmax(moving[:, ::-1], axis=1)  # each one's last move
-        return paths, lengths.astype(np.int64)
+        return paths, steps_of(paths)
+
+
+def steps_of(paths: NDArray[np.int32]) -> NDArray[np.int64]:
+    """Steps (k,) after which each robot stays, of places (k, T)."""
+    moving = np.pad(paths[:, :-1] != paths[:, 1:], ((0, 0), (1, 0)), constant_values=True)
+    lengths: NDArray[np.int64] = moving.shape[1] - 1 - np.argmax(moving[:, ::-1], axis=1)  # each one's last move
+    return lengths
+
+
+def load_kernels() -> None:
+    """Search a slice in every way, so that everything is compiled before somebody's time limit runs."""
+    traffic = Traffic(GridGraph(np.zeros((1, 3), np.bool_), 4, 0.0), np.array([(0, 2), (2, 0)]))
+    search = Lacam(traffic, 0)
+    for _ in range(2):
+        search._search_both_ways(1, Budget(np.inf))
+    traffic.close()
 
 
 def plan_lacam(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> TeamPlan:

@@ -8,13 +8,13 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from lidarena.base.errors import TeamError, suggest
+from lidarena.planning.team import arrangements, lacam
 from lidarena.planning.team.budget import Budget
 from lidarena.planning.team.certified import plan_certified
 from lidarena.planning.team.coordination import plan_coordination
 from lidarena.planning.team.deviation import DeviationCosts
 from lidarena.planning.team.grid_graph import STEP, UNREACHABLE, GridGraph, grid_graph_of
 from lidarena.planning.team.joint import plan_joint
-from lidarena.planning.team.lacam import plan_lacam
 from lidarena.planning.team.prioritized import plan_independent, plan_prioritized
 from lidarena.planning.team.search import plan_search
 from lidarena.planning.team.team_plan import TeamPlan
@@ -99,6 +99,9 @@ def _load_kernels(method: Method) -> None:
     """Plan for two robots that swap places: compiling and loading kernels is not to be taken from a time limit."""
     if method == "prioritized_search":
         _load_kernels("lacam")
+        arrangements.load_kernels()
+    if method == "lacam":
+        lacam.load_kernels()
     options: dict[str, Any] = {"cell_costs": np.zeros((3, 3))} if method == "prioritized_search" else {}
     ends = [(1, 0), (1, 2)]
     plan_team(np.zeros((3, 3), np.bool_), ends, ends[::-1], method, time_limit=math.inf, iterations=2, **options)
@@ -125,7 +128,7 @@ def _plan(
         case "prioritized_search":
             return plan_search(traffic, budget, rng)
         case "lacam":
-            return plan_lacam(traffic, budget, rng)
+            return lacam.plan_lacam(traffic, budget, rng)
         case "cbs":
             return plan_certified(traffic, time_limit, iterations, rng)
 

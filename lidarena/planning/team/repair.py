@@ -69,7 +69,7 @@ class Repair:
         return rng.permutation(group) if rng.random() < 0.7 else group
 
     def _late_robot(self) -> int:
-        """A robot that is late; in a crowd, where there is no time to try all of them, the more often the later it is."""
+        """A robot that is late; in a crowd, where not all of them can be tried, the more often the later it is."""
         delays = self._traffic.lengths - self._traffic.alone
         late = np.flatnonzero(delays > 0)
         if len(self._traffic) <= _CROWD:

@@ -11,8 +11,9 @@ the robots of a random order, some of them, first wait at their starts.
 import numpy as np
 from numpy.typing import NDArray
 
+from lidarena.planning.team.arrangements import Verdict, decide, is_small
 from lidarena.planning.team.budget import Budget
-from lidarena.planning.team.lacam import Lacam, why_not
+from lidarena.planning.team.lacam import Lacam, steps_of, why_not
 from lidarena.planning.team.prioritized import longest_first
 from lidarena.planning.team.repair import Repair
 from lidarena.planning.team.team_plan import TeamPlan, failed_plan, solved_plan
@@ -22,6 +23,7 @@ PATIENCE = 300
 """Neighbourhoods without a gain after which a plan counts as settled; large teams have more of them."""
 _PATIENCE_A_ROBOT = 4
 _SHARE_OF_ORDERS, _MOST_ORDERS = 0.25, 64  # of the time, before LaCAM looks for a plan
+_SHARE_WITH_A_PLAN = 0.3  # of the time left, for LaCAM to find a better one than is known
 _SHARE_OF_CONFIGURATIONS, _MOST_SLICES = 0.7, 100  # of the time left, to improve on LaCAM's plan
 _PART = 16  # robots that are planned between two looks at the clock
 _DELAYED = 0.5  # share of the robots of a random order that wait at their starts
@@ -77,17 +79,15 @@ def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> T
     by = f"order {tried}"
     search: Lacam | None = None
     if placed < len(order):
-        search = Lacam(traffic, int(rng.integers(2**31)))
-        status = search.run(budget.again(), first=True)
-        if not search.found:
+        traffic.remove(order[:placed])
+        search, by, why = _find_any(traffic, budget, rng)
+        if by == "":
             message = (
-                f"{why_not(status, search.steps)} Before, robot {order[placed]} found no way past the robots before it"
+                f"{why} Before, robot {order[placed]} found no way past the robots before it"
                 f" in the last of {tried} orders of priority (failure-driven promotion, then random orders and delays)."
             )
             return failed_plan(traffic, message, order)
-        traffic.remove(order[:placed])
-        traffic.adopt(*search.paths())
-        by = f"LaCAM after {tried} orders of priority"
+        by = f"{by} after {tried} orders of priority"
         order = np.empty(0, np.int64)
     first = traffic.cost()
     neighbourhoods = _improve(traffic, search, budget, rng)
@@ -96,6 +96,27 @@ def plan_search(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> T
         f" which saved {first - traffic.cost()} steps."
     )
     return solved_plan(traffic, message, order=order)
+
+
+def _find_any(traffic: Traffic, budget: Budget, rng: np.random.Generator) -> tuple[Lacam | None, str, str]:
+    """Adopt any plan, where no order of priority gives one.
+
+    Returns:
+        LaCAM's search if the plan is its own; what found the plan, "" for nothing; why there is none.
+    """
+    verdict = decide(traffic.graph, traffic.ends) if is_small(traffic.graph, len(traffic)) else Verdict(None, False)
+    if verdict.impossible:
+        return None, "", "There is no plan: no steps over the sets of places that the team can take lead to its goals."
+    search, whole = Lacam(traffic, int(rng.integers(2**31))), budget.again()
+    known = verdict.paths is not None
+    status = search.run(whole.part(_SHARE_WITH_A_PLAN, _MOST_SLICES) if known else whole, first=True)
+    if search.found:
+        traffic.adopt(*search.paths())
+        return search, "LaCAM", ""
+    if verdict.paths is None:
+        return None, "", why_not(status, search.steps)
+    traffic.adopt(verdict.paths, steps_of(verdict.paths))
+    return None, "a search over the sets of places that can be taken", ""
 
 
 def _improve(traffic: Traffic, search: Lacam | None, budget: Budget, rng: np.random.Generator) -> int:
