@@ -225,7 +225,7 @@ def survey(neighbours: NDArray[np.int32], bits: NDArray[np.int64], sets: Sets, r
     for robot in range(team):
         start |= np.int64(1) << sets.where[0, robot]
     sets.number[start] = 0
-    count, head = np.int64(1), np.int64(0)
+    count, head = 1, np.int64(0)
     while head < count:
         at[:] = -1
         for robot in range(team):
@@ -233,7 +233,7 @@ def survey(neighbours: NDArray[np.int32], bits: NDArray[np.int64], sets: Sets, r
         count = _step_alone(head, count, neighbours, bits, sets, at, scratch)
         count = _step_in_rings(head, count, neighbours, bits, sets, at, scratch)
         head += 1
-    return count, scratch[4, 0] > 0
+    return count, bool(scratch[4, 0] > 0)
 
 
 @kernel

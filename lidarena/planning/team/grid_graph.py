@@ -207,7 +207,7 @@ class GridGraph:
         """
         if goal in self._ahead:
             return self._ahead[goal]
-        costs = self._flooded([goal])[0]
+        costs: NDArray[np.int32] = self._flooded([goal])[0]
         if (len(self._ahead) + 1) * costs.nbytes > _CACHED_BYTES:
             self._ahead.clear()
         self._ahead[goal] = costs
