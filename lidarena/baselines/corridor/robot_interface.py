@@ -104,8 +104,9 @@ class Fleet:
         own: dict[str, Any] = info if self._central else next(iter(info.values()))
         x, y = np.asarray(own["origin"]).tolist()
         side = float(own["resolution"])
-        clearance = np.asarray(own["clearance"]) if side < _COARSE else None
-        return FloorGrid(np.asarray(own["map"]) > 50, (x, y), side, clearance)
+        by_blocked, clearance = side >= _COARSE, np.asarray(own["clearance"])
+        distances = (None, clearance) if by_blocked else (clearance, None)
+        return FloorGrid(np.asarray(own["map"]) > 50, (x, y), side, *distances)
 
     @property
     def drawn(self) -> bool:

@@ -16,11 +16,14 @@ from lidarena.envs.corridor.rendering import TeamSketch
 from lidarena.envs.corridor.starts_and_goals import CELL
 from lidarena.planning.grid.inflation import clearance
 from lidarena.planning.team.floor_grid import FloorGrid
+from lidarena.planning.team.grid_graph import GridGraph
 from lidarena.planning.team.plan import Method, plan_team
 from lidarena.planning.team.team_plan import TeamPlan
 
 _SPARE = (0.05, 0.02, 0.012, 0.0)
 """Room beside the robots that discs have where larger ones do not fit [m]."""
+_LEAST_SPARE = 0.045
+"""Room beside a robot, in truth, in the cells that it is planned through where there are others [m]."""
 ROOM = 0.2
 """Robots are planned as discs of at least this radius [m]."""
 _KEEPS_UP = 0.4
@@ -125,11 +128,29 @@ class PlannedFleet:
 
     def plan_from(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan from where the robots are."""
-        self.grid, graph = grid, grid.graph(self.radius)
+        self.grid, graph = grid, self.graph_of(grid, state, self.radius)
         ends = grid.standing(state.poses[:, :2], graph), grid.standing(state.goals, graph)
         return plan_team(
             graph, *ends, self.method, time_limit=self.time_limit, seed=self.seed, **self.extras(grid)
         )  # fmt: skip
+
+    def graph_of(
+        self, grid: FloorGrid, state: FleetState, radius: float, taken: NDArray[np.bool_] | None = None
+    ) -> GridGraph:
+        """Where robots are planned: not where a wall reaches nearer into a cell than they can be sure to drive by.
+
+        Args:
+            grid: The cells.
+            state: The team; where it stands and goes stays open.
+            radius: Of the discs that are planned for [m].
+            taken: (rows, cols) cells that are blocked besides; None = none.
+        """
+        if grid.away is None:
+            return grid.graph(radius, taken)
+        closed = grid.away < self.fleet.radius + min(_LEAST_SPARE, radius - self.fleet.radius)
+        for points in (state.poses[:, :2], state.goals):
+            closed[tuple(grid.cells(points).T)] = False
+        return grid.graph(radius, taken, closed)
 
     def extras(self, grid: FloorGrid) -> dict[str, Any]:
         """What else the planner is told."""

@@ -175,7 +175,7 @@ class SearchingFleet(PlannedFleet):
         taken = np.zeros_like(grid.blocked)
         for robot in set(range(self.fleet.robots)) - set(movers.tolist()):
             block_disc(taken, grid, state.poses[robot, :2], self.fleet.radius)
-        graph = grid.graph(radius, taken)
+        graph = self.graph_of(grid, state, radius, taken)
         cells, goals = grid.standing(state.poses[:, :2], graph), grid.standing(state.goals, graph)
         try:
             plan = plan_team(

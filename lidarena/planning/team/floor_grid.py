@@ -25,12 +25,15 @@ class FloorGrid:
         resolution: Side of a cell [m].
         clearance: (rows, cols) distance from a cell's centre to the nearest wall [m], where robots are to be planned
             for by it; None: by the blocked cells, which may reach farther into a corridor than its walls.
+        away: The same where they are planned for by the blocked cells: walls reach into cells that are not blocked, by
+            up to half a side. None: not known.
     """
 
     blocked: NDArray[np.bool_]
     origin: tuple[float, float]
     resolution: float
     clearance: NDArray[np.float32] | None = None
+    away: NDArray[np.float32] | None = None
 
     @classmethod
     def of(cls, plan: Floorplan, resolution: float = 0.2, exact: bool = False) -> "FloorGrid":
@@ -59,18 +62,24 @@ class FloorGrid:
         blocked |= outside
         clearance = np.where(raster.solid | outside, 0.0, raster.clearance).astype(np.float32)
         origin = float(raster.origin[0]), float(raster.origin[1])
-        return cls(blocked, origin, resolution, clearance if exact else None)
+        return cls(blocked, origin, resolution, *((clearance, None) if exact else (None, clearance)))
 
-    def graph(self, radius: float, taken: NDArray[np.bool_] | None = None) -> GridGraph:
+    def graph(
+        self, radius: float, taken: NDArray[np.bool_] | None = None, closed: NDArray[np.bool_] | None = None
+    ) -> GridGraph:
         """Where robots can stand and go, with 8 neighbours.
 
         Args:
             radius: Of every robot [m].
             taken: (rows, cols) cells that are blocked besides; None = none.
+            closed: (rows, cols) cells on whose centres no robot is to be, whatever its radius; None = none.
         """
         if self.clearance is None:
             blocked = self.blocked if taken is None else self.blocked | taken
-            return grid_graph_of(blocked, 8, self.in_cells(radius))
+            if closed is None:
+                return grid_graph_of(blocked, 8, self.in_cells(radius))
+            near = near_blocked(blocked, self.in_cells(radius))
+            return grid_graph_of(near | closed, 8, self.in_cells(radius), walls=0.0)
         closed = (self.clearance < radius - _ROUNDING) | (self.clearance <= 0.0)
         if taken is not None:
             closed |= near_blocked(taken, self.in_cells(radius))

@@ -56,6 +56,27 @@ def test_what_is_planned_is_valid_for_discs_with_room_around_the_robots(name: st
     assert validate_plan(policy.plan, grid.blocked, *ends, radius=grid.in_cells(0.23)) == []
 
 
+SHELVES: dict[str, Any] = {"map": "random:warehouse?area_min=60&area_max=100", "places": "random", "robots": 4}
+
+
+@pytest.mark.parametrize("seed", [12, 14, 21])
+def test_where_shelves_reach_into_free_cells_there_is_room_beside_the_robots(seed: int) -> None:
+    """A cell is free if its inner circle is, so that a disc of 0.2 m in free cells of 0.2 m may be 0.1 m from a wall."""
+    env, policy, infos = make("prioritized_search", SHELVES, seed=seed, iterations=20)
+    policy.act({}, infos)
+    plan, grid = policy.plan, policy.fleet.grid(infos)
+    assert plan is not None and plan.solved and grid.away is not None
+    least = policy.fleet.radius + min(0.045, policy.radius - policy.fleet.radius)
+    for path in plan.paths:
+        ends = {tuple(cell) for other in plan.paths for cell in (other[0].tolist(), other[-1].tolist())}
+        assert all(grid.away[cell] >= least for cell in map(tuple, path.tolist()) if cell not in ends)
+    for _ in range(600):
+        if env.agents:
+            infos = env.step(policy.act({}, infos))[4]
+            assert not any(info["collision"] for info in infos.values())
+    assert not env.agents
+
+
 @pytest.mark.parametrize("name", ["prioritized_astar", "coordination", "joint_astar"])
 def test_without_noise_by_the_clock_nobody_collides(name: str) -> None:
     env, policy, infos = make(name, SAME_WAY | {"goals": [(11.1, 7.1), (9.1, 7.7)]})

@@ -71,3 +71,15 @@ def test_taken_cells_are_kept_clear_of_and_points_beside_walls_get_the_nearest_c
     cell = grid.standing(beside, graph)
     assert graph.place(cell[0]) >= 0 and np.hypot(*(grid.points(cell) - beside).T) < 0.15
     assert np.array_equal(FloorGrid.of(ROOM, 0.1).standing(beside, graph), grid.cells(beside))
+
+
+def test_closed_cells_are_left_out_as_they_are():
+    """Discs keep away from blocked cells by their radius, and from closed ones not at all."""
+    blocked = np.zeros((9, 9), bool)
+    blocked[4, 4] = True
+    grid = FloorGrid(blocked, (0.0, 0.0), 0.2)
+    closed = np.zeros_like(blocked)
+    closed[4, 7] = True
+    with_it, without = grid.graph(0.2, closed=closed), grid.graph(0.2)
+    assert np.argwhere((without.index >= 0) != (with_it.index >= 0)).tolist() == [[4, 7]]
+    assert with_it.apart == without.apart
