@@ -20,8 +20,8 @@ _STILL = 0.02  # nearer than this to its target it rests (m)
 
 
 _TURN_FIRST_WHERE_NARROW = 0.2  # where there is no room for an arc (rad)
-_SLOW = 0.12  # no faster than this there (m/s)
-_NARROW = 0.06  # less room than this beside a robot leaves none (m)
+_SLOW, _FASTER = 0.12, 2.0  # no faster there than this (m/s), or than the room in so much of a second (1/s)
+_NARROW = 0.11  # less room than this beside a robot leaves none (m)
 _LEAST_CUT = 0.01  # by so much a robot may always leave its path, or it would never get round a corner (m)
 
 
@@ -163,10 +163,11 @@ class OrderedDriving:
         for robot in np.flatnonzero(state.active).tolist():
             target, blocking_agents = self._target(robot)
             target = self._without_cutting(robot, target, state.poses[robot, :2])
-            narrow = self._room is not None and self._room[robot][target] < _NARROW
+            room = math.inf if self._room is None else float(self._room[robot][target])
+            narrow = room < _NARROW
             turn_first = _TURN_FIRST_WHERE_NARROW if narrow else _TURN_FIRST
             speed, rate = steer_to(state.poses[robot], self.curves[robot][target], turn_first=turn_first)
-            speed = min(speed, _SLOW) if narrow else speed
+            speed = min(speed, max(_SLOW, _FASTER * room)) if narrow else speed
             ahead = self._in_the_way(robot, speed, state)
             commands[robot] = (0.0 if ahead else speed), rate
             waits += [(robot, int(other)) for other in {*blocking_agents, *ahead}]
