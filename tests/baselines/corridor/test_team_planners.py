@@ -61,7 +61,7 @@ SHELVES: dict[str, Any] = {"map": "random:warehouse?area_min=60&area_max=100", "
 
 @pytest.mark.parametrize("seed", [12, 14, 21])
 def test_where_shelves_reach_into_free_cells_there_is_room_beside_the_robots(seed: int) -> None:
-    """A cell is free if its inner circle is, so that a disc of 0.2 m in free cells of 0.2 m may be 0.1 m from a wall."""
+    """A cell is free if its inner circle is: a disc of 0.2 m in free cells of 0.2 m may be 0.1 m from a wall."""
     env, policy, infos = make("prioritized_search", SHELVES, seed=seed, iterations=20)
     policy.act({}, infos)
     plan, grid = policy.plan, policy.fleet.grid(infos)
