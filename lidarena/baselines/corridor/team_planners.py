@@ -85,7 +85,7 @@ class PlannedFleet:
         self._tracker = WallTracker(self.fleet)
         self.seed = 0 if seed is None else seed
         self.finished, self.message = False, ""
-        self.radius = self._wanted_radius
+        self.radius, self._keeps_spare = self._wanted_radius, True
         self.plan: TeamPlan | None = None
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
@@ -111,12 +111,17 @@ class PlannedFleet:
 
     def _plan_or_say_why(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan, for smaller discs where the team has no room for the wanted ones; without any, the message says so."""
-        for spare in (math.inf, *_SPARE):
-            self.radius = min(self._wanted_radius, self.fleet.radius + spare)
-            try:
-                return self.plan_from(state, grid)
-            except TeamError as error:
-                refusal = error
+        for self._keeps_spare in (True, False):
+            for spare in (math.inf, *_SPARE):
+                self.radius = min(self._wanted_radius, self.fleet.radius + spare)
+                try:
+                    plan = self.plan_from(state, grid)
+                except TeamError as error:
+                    refusal = error
+                    continue
+                if plan.solved or not self.needs_solution or grid.away is None or not self._keeps_spare:
+                    return plan
+                break
         self.radius = self._wanted_radius
         return self._refused(grid, refusal)
 
@@ -139,13 +144,15 @@ class PlannedFleet:
     ) -> GridGraph:
         """Where robots are planned: not where a wall reaches nearer into a cell than they can be sure to drive by.
 
+        Where there is no way but such, it stays open.
+
         Args:
             grid: The cells.
             state: The team; where it stands and goes stays open.
             radius: Of the discs that are planned for [m].
             taken: (rows, cols) cells that are blocked besides; None = none.
         """
-        if grid.away is None:
+        if grid.away is None or not self._keeps_spare:
             return grid.graph(radius, taken)
         closed = grid.away < self.fleet.radius + min(_LEAST_SPARE, radius - self.fleet.radius)
         for points in (state.poses[:, :2], state.goals):

@@ -1,5 +1,6 @@
 """Planned fleets: what they plan is valid and off the walls, and by the clock they drive what they have planned."""
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -75,6 +76,16 @@ def test_where_shelves_reach_into_free_cells_there_is_room_beside_the_robots(see
             infos = env.step(policy.act({}, infos))[4]
             assert not any(info["collision"] for info in infos.values())
     assert not env.agents
+
+
+@pytest.mark.parametrize("name", ["prioritized_astar", "prioritized_search", "independent_astar"])
+def test_where_no_way_has_room_in_truth_the_free_cells_are_planned_through(name: str) -> None:
+    _, policy, infos = make(name, {"map": "office", **SAME_WAY})
+    grid = policy.fleet.grid(infos)
+    policy.fleet.grid = lambda infos: replace(grid, away=np.full_like(grid.away, 0.1))  # type: ignore[method-assign]
+    policy.act({}, infos)
+    assert policy.plan is not None and policy.plan.solved and not policy.finished
+    assert policy.radius == 0.2
 
 
 @pytest.mark.parametrize("name", ["prioritized_astar", "coordination", "joint_astar"])
