@@ -63,6 +63,8 @@ class PlannedFleet:
 
     method: Method = "independent_astar"
     needs_solution = True
+    attempts: tuple[tuple[bool, bool], ...] = ((True, True), (False, True))
+    """Until there is a plan: whether to keep to cells with room in truth; whether to keep off walls where one can."""
 
     def __init__(self, env: Any, planning_radius: float | None, step: float, time_limit: float) -> None:
         self.fleet = Fleet(env)
@@ -85,7 +87,7 @@ class PlannedFleet:
         self._tracker = WallTracker(self.fleet)
         self.seed = 0 if seed is None else seed
         self.finished, self.message = False, ""
-        self.radius, self._keeps_spare = self._wanted_radius, True
+        self.radius, self._keeps_spare, self._keeps_off_walls = self._wanted_radius, True, True
         self.plan: TeamPlan | None = None
 
     def act(self, observation: Any, info: dict[str, Any]) -> Any:
@@ -111,7 +113,9 @@ class PlannedFleet:
 
     def _plan_or_say_why(self, state: FleetState, grid: FloorGrid) -> TeamPlan:
         """Plan, for smaller discs where the team has no room for the wanted ones; without any, the message says so."""
-        for self._keeps_spare in (True, False):
+        plan: TeamPlan | None = None
+        for attempt in self.attempts:
+            self._keeps_spare, self._keeps_off_walls = attempt
             for spare in (math.inf, *_SPARE):
                 self.radius = min(self._wanted_radius, self.fleet.radius + spare)
                 try:
@@ -119,9 +123,11 @@ class PlannedFleet:
                 except TeamError as error:
                     refusal = error
                     continue
-                if plan.solved or not self.needs_solution or grid.away is None or not self._keeps_spare:
+                if plan.solved or not self.needs_solution:
                     return plan
                 break
+        if plan is not None:
+            return plan
         self.radius = self._wanted_radius
         return self._refused(grid, refusal)
 
@@ -161,7 +167,7 @@ class PlannedFleet:
 
     def extras(self, grid: FloorGrid) -> dict[str, Any]:
         """What else the planner is told."""
-        return {"cell_costs": wall_costs(grid)}
+        return {"cell_costs": wall_costs(grid)} if self._keeps_off_walls else {}
 
     def begin_driving(self) -> None:
         """Take up a new plan."""

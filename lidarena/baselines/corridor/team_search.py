@@ -50,6 +50,8 @@ class SearchingFleet(PlannedFleet):
     """
 
     method: Method = "prioritized_search"
+    # where costs do not count, safe intervals do for a search, which then is many times faster
+    attempts = ((True, True), (True, False), (False, True), (False, False))
 
     def __init__(
         self,

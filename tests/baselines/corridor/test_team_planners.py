@@ -14,6 +14,7 @@ from lidarena.envs import corridor_v0
 from lidarena.envs.corridor.parallel_env import CorridorEnv
 from lidarena.planning import validate_plan
 from lidarena.planning.team.floor_grid import FloorGrid
+from lidarena.planning.team.team_plan import TeamPlan
 from lidarena.world.load import load_floorplan
 from tests.envs.corridor.corridor_worlds import EXACT
 
@@ -86,6 +87,22 @@ def test_where_no_way_has_room_in_truth_the_free_cells_are_planned_through(name:
     policy.act({}, infos)
     assert policy.plan is not None and policy.plan.solved and not policy.finished
     assert policy.radius == 0.2
+
+
+def test_a_team_that_is_not_solved_in_time_is_planned_without_costs_beside_walls() -> None:
+    """Which search safe intervals, many times faster than places at times."""
+    _, policy, infos = make("prioritized_search", {"map": "office", **SAME_WAY}, iterations=5)
+    plan_from, told = policy.plan_from, []
+
+    def unsolved_with_costs(state: Any, grid: FloorGrid) -> TeamPlan:
+        told.append(policy.extras(grid))
+        plan = plan_from(state, grid)
+        return plan if "cell_costs" not in told[-1] else replace(plan, solved=False)
+
+    policy.plan_from = unsolved_with_costs  # type: ignore[method-assign]
+    policy.act({}, infos)
+    assert policy.plan is not None and policy.plan.solved and not policy.finished
+    assert ["cell_costs" in extras for extras in told] == [True, False]
 
 
 @pytest.mark.parametrize("name", ["prioritized_astar", "coordination", "joint_astar"])
