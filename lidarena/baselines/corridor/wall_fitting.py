@@ -11,10 +11,13 @@ from lidarena.planning.team.floor_grid import FloorGrid
 
 Floats = NDArray[np.float64]
 
-_PRIOR = np.array([0.01, 0.01, 0.02])
+_PRIOR = np.array([0.015, 0.015, 0.05])
 """Deviations of the pose that is believed before [m, m, rad]."""
 _NOISE = 0.02
 """Deviation of how far a beam's end lies from its wall, the noise of beams and the edges of cells together [m]."""
+_NEAR = 0.7
+"""It grows with the range beyond this [m]: a long beam may meet another wall than the one that it would meet from the
+pose that is believed."""
 _ROUNDS = 3
 _BACK = 1.5
 """Distances are looked up so far before a beam's end, where cells are free, and drawn out to it [cells]."""
@@ -87,8 +90,9 @@ def fit_to_walls(pose: Floats, scan: Floats, directions: Floats, reach: float, g
         off = away + back * (slopes * ways).sum(axis=1)
         good = (away >= _FREE * grid.resolution) & (np.abs(off) < _ODD)
         turned = scan * (slopes[:, 1] * ways[:, 0] - slopes[:, 0] * ways[:, 1])
-        rows = np.column_stack([slopes, turned])[good] / _NOISE
-        wanted = rows.T @ (-off[good] / _NOISE) + (pose - fitted) / _PRIOR**2
+        noise = _NOISE * np.maximum(1.0, scan[good] / _NEAR)
+        rows = np.column_stack([slopes, turned])[good] / noise[:, None]
+        wanted = rows.T @ (-off[good] / noise) + (pose - fitted) / _PRIOR**2
         fitted += np.linalg.solve(rows.T @ rows + np.diag(_PRIOR**-2.0), wanted)
     return fitted
 

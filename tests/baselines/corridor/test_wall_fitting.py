@@ -6,7 +6,7 @@ from typing import Any, cast
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import example, given, settings
 from hypothesis import strategies as st
 
 import lidarena
@@ -43,6 +43,7 @@ believed = st.tuples(st.floats(-0.02, 0.02), st.floats(-0.02, 0.02), st.floats(-
 
 @settings(max_examples=40, deadline=None)
 @given(**(corridors | {"spare": st.floats(0.05, 0.12)}), off=believed, share=st.floats(0.1, 0.9))
+@example(0.125, 0.0625, -2.0, 0.0, (0.0, 0.0), (0.0, 0.0, 0.046875), 0.25)  # a long beam meets another wall
 def test_a_pose_in_a_corridor_is_found_across_it(radius, spare, kink, angle, offset, off, share):
     plan, ends = corridor(2 * radius + spare, kink, angle, offset)
     grid = FloorGrid.of(plan, 0.025, exact=True)
